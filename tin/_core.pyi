@@ -11,8 +11,9 @@ LARGEST_ELEVATION: float
 
 class Method(enum.Enum):
     AUTOMATIC = 0
-    GROWTH = 1
-    INSERTION = 2
+    GROWTH_OR_INSERTION = 1
+    GROWTH = 2
+    INSERTION = 3
 
 def vector_paths() -> list[str]: ...
 def join_triangles(triangles: Int32Array, vertex_count: int) -> tuple[Int32Array, bool]: ...

@@ -77,8 +77,9 @@ def grow(
     r"""Grow the Delaunay triangulation of (n, 3) float64 points, n >= 1; z is not looked at.
 
     Every method, number of threads and vector path gives the same arrays. ``Method.AUTOMATIC``
-    grows, and inserts where points are so uneven that growing would be slow. ``progress`` is told
-    the share of the vertices that growth has taken up.
+    writes the triangles of a raster as they are; other points ``GROWTH_OR_INSERTION`` grows, and
+    inserts where they are so uneven that growing would be slow. ``progress`` is told the share of
+    the vertices that growth has taken up, or of the rows of a raster.
 
     The search for a third point, most of the work::
 

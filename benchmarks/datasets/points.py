@@ -54,6 +54,15 @@ def make_decimal_raster(n: int, rng: np.random.Generator) -> Float64Array:
     return tenths / 10.0
 
 
+def make_raster_with_gaps(n: int, rng: np.random.Generator) -> Float64Array:
+    """30 m raster without a lake of a fiftieth of its area, and without one cell in twenty."""
+    steps = _make_lattice(round(n / (0.95 * 0.98)))
+    columns, rows = steps.max(axis=0) + 1.0
+    from_lake = np.hypot(steps[:, 0] - 0.6 * columns, steps[:, 1] - 0.4 * rows)
+    is_land = from_lake**2 > 0.02 * columns * rows / np.pi
+    return UTM_CORNER + steps[is_land & (rng.random(len(steps)) > 0.05)] * 30.0
+
+
 def make_scan_lines(n: int, rng: np.random.Generator) -> Float64Array:
     """Lidar scan lines 1 m apart, jittered along and across, rounded to cm."""
     steps = _make_lattice(n)
@@ -142,6 +151,7 @@ DATASETS: dict[str, Callable[[int, np.random.Generator], Float64Array]] = {
     "uniform": make_uniform,
     "raster": make_raster,
     "decimal raster": make_decimal_raster,
+    "raster with gaps": make_raster_with_gaps,
     "scan lines": make_scan_lines,
     "clusters": make_clusters,
     "contour lines": make_contour_lines,

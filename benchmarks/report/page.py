@@ -312,8 +312,9 @@ def _format_memory(rows: list[_KernelRow], tools: list[str]) -> str:
 WORK_NOTES = """\
 Per triangle: searches for a third point (below 1 where the kernel switches to insertion); full
 searches, which go beyond the gathered neighbourhood; candidates examined; rows of cells that full
-searches enter; decisions that needed exact arithmetic. These counts do not depend on the machine;
-`count_work` in `tin/_kernel.py` returns them for any points.
+searches enter; decisions that needed exact arithmetic. Rasters are grown for this table; as a rule
+they are written without a search. These counts do not depend on the machine; `count_work` in
+`tin/_kernel.py` returns them for any points.
 """
 WORK_COUNTS = ("searches", "full_searches", "candidates", "cell_rows", "exact_decisions")
 

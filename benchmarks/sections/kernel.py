@@ -153,7 +153,7 @@ def make_result(
 
 
 def _measure_work(case: Case, points: Float64Array) -> Result:
-    counts = _kernel.count_work(points)
+    counts = _kernel.count_work(points, method=_kernel.Method.GROWTH_OR_INSERTION)
     per_triangle = {
         name: count / counts["triangles"] for name, count in counts.items() if name != "triangles"
     }

@@ -28,14 +28,18 @@ LARGEST_GROWN = 100_000
 """Above this growth alone takes too long on the data that the kernel hands to insertion."""
 QUADRATIC = ("circle", "few circles", "rails")
 """Data on which growth alone takes time with the square of the points."""
+LATTICES = ("raster", "decimal raster", "raster with gaps")
+"""Data whose triangles are written without a search."""
 
 
 def run(n: int, *, repeats: int = 5) -> Outcome:
-    """Measure vector paths, threads (at ``n`` points), methods (up to 100,000), small inputs."""
+    """Measure vector paths, threads, lattices (``n`` points), methods (100,000), small inputs."""
     outcome = Outcome()
     for name in ("uniform", "raster"):
         outcome.results += _measure_vector_paths(name, n, repeats)
     outcome.results += _measure_threads("uniform", n, repeats)
+    for name in LATTICES:
+        outcome.results += _measure_lattice(name, n, repeats)
     for name in DATASETS:
         outcome.results += _measure_methods(name, min(n, LARGEST_GROWN), repeats)
     for size in SMALL_SIZES:
@@ -47,8 +51,8 @@ def run(n: int, *, repeats: int = 5) -> Outcome:
 def _measure_vector_paths(name: str, n: int, repeats: int) -> Iterator[Result]:
     points = make_points(name, n)
     *slower, used = _kernel.VECTOR_PATHS
-    variants = {OURS: partial(_kernel.grow, points)}
-    variants |= {f"path {path}": partial(_kernel.grow, points, path=path) for path in slower}
+    grow = partial(_kernel.grow, points, method=_kernel.Method.GROWTH)
+    variants = {OURS: grow} | {f"path {path}": partial(grow, path=path) for path in slower}
     note = {OURS: f"path {used}, the one it takes here"}
     return _measure_variants(f"{name}, vector instructions", len(points), variants, repeats, note)
 
@@ -60,6 +64,21 @@ def _measure_threads(name: str, n: int, repeats: int) -> Iterator[Result]:
     return _measure_variants(
         f"{name}, threads", len(points), variants, 3 * repeats, {OURS: "one thread"}
     )
+
+
+def _measure_lattice(name: str, n: int, repeats: int) -> Iterator[Result]:
+    """Measure whole calls, and the kernel beside its own growth."""
+    points = make_points(name, n)
+    grow = partial(_kernel.grow, points)
+    variants: dict[str, Callable[[], Any]] = {
+        OURS: partial(ts.triangulate, points, threads=1),
+        TWO_THREADS: partial(ts.triangulate, points, threads=2),
+        "kernel": grow,
+        "growth": partial(grow, method=_kernel.Method.GROWTH),
+        "growth, two threads": partial(grow, method=_kernel.Method.GROWTH, threads=2),
+    }
+    note = {OURS: "whole call, one thread", TWO_THREADS: "whole call"}
+    return _measure_variants(f"{name}, lattice", len(points), variants, repeats, note)
 
 
 def _measure_methods(name: str, n: int, repeats: int) -> Iterator[Result]:

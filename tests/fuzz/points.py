@@ -1,4 +1,4 @@
-"""Campaign: points alone, against brute force, a second order, threads, duplicates and snap."""
+"""Campaign: points alone, against brute force, every engine, a second order, duplicates, snap."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ from support import oracles
 from support.point_sets import points
 
 import tinsmith as ts
+from tinsmith.tin import _kernel
 
 from .campaign import Campaign, Case
 
@@ -37,6 +38,7 @@ def examine(case: Case) -> str:
         return _examine_refusal(xyz, error, **options)
     ts.check(tin, points=xyz).raise_if_failed()
     _require_same(tin, ts.triangulate(xyz, **options, threads=case["threads"]))
+    _examine_engines(tin.points, case["threads"])
     if not case["snap"]:
         _examine_elevations(tin, xyz, case["duplicates"])
         _examine_order(tin, xyz, case)
@@ -65,6 +67,17 @@ def _examine_refusal(xyz: np.ndarray, error: Exception, *, duplicates: str, snap
 def _require_same(tin: ts.TIN, other: ts.TIN) -> None:
     for name in ("points", "triangles", "neighbors", "constrained", "vertex_of"):
         assert np.array_equal(getattr(tin, name), getattr(other, name)), f"{name} differ"
+
+
+def _examine_engines(points: np.ndarray, threads: int) -> None:
+    """Every way to build gives the same arrays; rasters have one of their own."""
+    wanted = _kernel.grow(points, method=_kernel.Method.INSERTION)
+    for method in _kernel.Method:
+        for count in (1, threads):
+            found = _kernel.grow(points, method=method, threads=count)
+            for name in ("triangles", "neighbors"):
+                same = np.array_equal(getattr(found, name), getattr(wanted, name))
+                assert same, f"{name} of {method} in {count} threads differ"
 
 
 def _examine_elevations(tin: ts.TIN, xyz: np.ndarray, policy: str) -> None:

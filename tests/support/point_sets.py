@@ -21,6 +21,30 @@ def lattice(rng: np.random.Generator, n: int) -> Float64Array:
     return rng.integers(0, rng.integers(2, 12), (n, 2)).astype(float)
 
 
+def raster_with_gaps(rng: np.random.Generator, n: int) -> Float64Array:
+    """Centres of a raster's cells, some of them and perhaps a disc left out, in any order.
+
+    Now and then its steps vary, one of its points is moved, or one is repeated.
+    """
+    columns = int(rng.integers(2, max(3, n // 2)))
+    rows = -(-n * int(rng.integers(10, 16)) // (10 * columns)) + 1
+    column, row = grid(columns, rows).astype(int).T
+    far = np.hypot(column - rng.uniform(0, columns), row - rng.uniform(0, rows))
+    first = np.argsort(np.where(far < rng.uniform(0, 3), 2.0, rng.random(len(far))))
+    taken = first[:n] if rng.random() < 0.5 else np.sort(first[:n])
+    steps = rng.choice([30.0, 0.1, 1 / 3, 1.0, 1e-9, 1e6]) * np.array(
+        [1.0, rng.choice([1, 2, 0.7])]
+    )
+    vary = rng.choice([0.0, 0.0, 1e-9, 0.2])
+    x = (np.arange(columns) + vary * rng.random(columns)) * steps[0]
+    y = (np.arange(rows) + vary * rng.random(rows)) * steps[1]
+    xy = np.column_stack([x[column], y[row]])[taken] + rng.choice([0.0, 0.1, 4e6])
+    if rng.random() < 0.1:
+        xy[rng.integers(n)] += rng.choice([0.0, 0.25]) * steps
+        xy[rng.integers(n)] = xy[rng.integers(n)]
+    return xy
+
+
 def neighbours(rng: np.random.Generator, n: int) -> Float64Array:
     """Groups of points a rounding or a few apart."""
     centres = rng.choice([0.1, 1 / 3, 1.0, 7.7, 1e5 / 3, 5.4e6], (1 + n // 6, 2))
@@ -81,6 +105,7 @@ KINDS = {
     kind.__name__: kind
     for kind in (
         lattice,
+        raster_with_gaps,
         neighbours,
         utm_centimetres,
         fractions,

@@ -1,10 +1,13 @@
-// The main path: index the points, find the hull, grow, number by the caller's rows.
+// The main path: index the points, find the hull, grow, number by the caller's rows. The triangles
+// of a lattice are written as they are.
 #pragma once
 
 #include <algorithm>
 #include <atomic>
 #include <cstdint>
 #include <functional>
+#include <optional>
+#include <stdexcept>
 #include <utility>
 #include <vector>
 
@@ -19,11 +22,16 @@
 #include "index/grid.hpp"
 #include "insertion/canonical_order.hpp"
 #include "insertion/insertion.hpp"
+#include "lattice/hole_filling.hpp"
+#include "lattice/lattice.hpp"
+#include "lattice/lattice_cells.hpp"
+#include "lattice/lattice_order.hpp"
 #include "search/neighborhood_paths.hpp"
 
 namespace tinsmith {
 
-enum class Method { kAutomatic, kGrowth, kInsertion };
+// Automatic: as a lattice, or by growth, or by insertion where growth costs too much.
+enum class Method { kAutomatic, kGrowthOrInsertion, kGrowth, kInsertion };
 
 // How to build; the result is the same for all.
 struct Options {
@@ -67,6 +75,7 @@ class Triangulator {
 
  private:
   void triangulate() {
+    if (options_.method == Method::kAutomatic && is_lattice()) return;
     PointGrid grid(rows_, team_);
     if (!team_.keeps_going(0)) return;
     result_.kept_row = grid.kept_row();
@@ -78,6 +87,81 @@ class Triangulator {
     build(grid, std::move(hull));
   }
 
+  // ------------------------------------------------------------- lattices
+
+  // Whether the points lie on a lattice, so that its triangles are made, or the team is stopped.
+  bool is_lattice() {
+    const std::optional<Lattice> lattice = Lattice::of(rows_, team_);
+    if (!lattice) return false;
+    const LatticeCells cells(*lattice, team_);
+    if (cells.points() < rows_.count || !is_mostly_certain(cells)) return false;
+    HoleFilling holes(cells);
+    for (std::int32_t row = 0; row < lattice->rows(); ++row) {
+      if (!team_.keeps_going(0)) return true;
+      holes.fill_small(row);
+    }
+    if (!fill_rest(*lattice, holes)) return true;
+    result_.distinct_count = rows_.count;
+    result_.triangle_count = cells.certain() + static_cast<std::int64_t>(holes.triangles().size());
+    if (result_.triangle_count != triangle_count(rows_.count, holes.outside_edges())) {
+      throw std::logic_error("the triangles of a lattice do not fill its hull");
+    }
+    const auto entries = static_cast<std::size_t>(3 * result_.triangle_count);
+    result_.corners = quickly_streamed_array<std::int32_t>(entries);
+    result_.neighbors = quickly_streamed_array<std::int32_t>(entries);
+    write_lattice(cells, holes);
+    return true;
+  }
+
+  // Holes cost more than growth where fewer of the triangles than this are certain.
+  static constexpr double kLeastCertain = 0.8;
+
+  static bool is_mostly_certain(const LatticeCells& cells) {
+    const std::int64_t around = cells.lattice().columns() + cells.lattice().rows();
+    const auto expected = static_cast<double>(2 * (cells.points() - around));
+    return cells.certain() > 0 && static_cast<double>(cells.certain()) >= kLeastCertain * expected;
+  }
+
+  // Fill the holes that are not small. False if the team is stopped.
+  bool fill_rest(const Lattice& lattice, HoleFilling& holes) {
+    const std::vector<std::int32_t> places = holes.places_left();
+    if (places.size() < 3) return true;
+    std::vector<Point> points;
+    points.reserve(places.size());
+    for (const std::int32_t place : places) points.push_back(lattice.point(place));
+    const Options options{Method::kGrowthOrInsertion, options_.threads, options_.path, false};
+    const auto count = static_cast<std::int64_t>(points.size());
+    const Triangulation made = Triangulator({&points[0].x, count, 2}, options, [this] {
+                                 return team_.keeps_going(0);
+                               }).run();
+    if (!made.is_complete) return false;
+    holes.fill_rest(places, made.corners.get(), made.neighbors.get(), made.triangle_count);
+    return true;
+  }
+
+  void write_lattice(const LatticeCells& cells, const HoleFilling& holes) {
+    const Lattice& lattice = cells.lattice();
+    LatticeOrder order(cells, holes, team_);
+    team_.expect(static_cast<std::int64_t>(2 * lattice.stripes().size()));
+    if (!options_.keeps_sweep) {
+      if (!order.number_all([](std::int32_t, std::int32_t) {})) return;
+      order.write(result_.arrays(), [&](std::int32_t place) { return lattice.at(place); });
+      return;
+    }
+    result_.rows = streamed_array<std::int32_t>(rows_.count);
+    result_.places = streamed_array<Point>(rows_.count);
+    const ScratchArray<std::int32_t> number = scratch_array<std::int32_t>(lattice.places());
+    const bool is_numbered = order.number_all([&](std::int32_t position, std::int32_t place) {
+      number[place] = position;
+      result_.rows[position] = lattice.at(place);
+      result_.places[position] = rows_[lattice.at(place)];
+    });
+    if (!is_numbered) return;
+    order.write(result_.arrays(), [&](std::int32_t place) { return number[place]; });
+  }
+
+  // ------------------------------------------------------------- all other points
+
   // With more of the points on the hull they lie on one curve, where every search sees them all.
   static constexpr std::int32_t kMostOnHull = 4;  // one point in four
   static constexpr std::int32_t kLeastToInsert = 1000;
@@ -88,14 +172,17 @@ class Triangulator {
     if (options_.keeps_sweep) keep_sweep(grid);
     const bool is_curve = static_cast<std::int32_t>(hull.size()) > grid.count() / kMostOnHull &&
                           grid.count() > kLeastToInsert;
-    const bool is_worth_growing =
-        options_.method == Method::kGrowth || (options_.method == Method::kAutomatic && !is_curve);
+    const bool is_worth_growing = options_.method == Method::kGrowth || (may_insert() && !is_curve);
     const bool is_grown = is_worth_growing && with_path(options_.path, [&](auto tag) {
                             return grow<typename decltype(tag)::Type>(grid, hull);
                           });
     if (is_grown || team_.is_stopped()) return;
     hull = {};
     insert_all(grid);
+  }
+
+  bool may_insert() const {
+    return options_.method == Method::kAutomatic || options_.method == Method::kGrowthOrInsertion;
   }
 
   // What a thread made of a task.
@@ -123,8 +210,7 @@ class Triangulator {
         Grown& made = grown[part].back();
         Growth<Near> growth(grid, hull, own, made.store);
         const Outcome outcome =
-            growth.run([&] { return !is_too_costly && team_.keeps_going(part); },
-                       options_.method == Method::kAutomatic,
+            growth.run([&] { return !is_too_costly && team_.keeps_going(part); }, may_insert(),
                        [&] {
                          const Range block = work.next_block(task);
                          team_.advance(block.size());

@@ -18,6 +18,20 @@ namespace tinsmith {
 
 class GridBuilder {
  public:
+  static constexpr double kPointsPerCell = 2.0;
+  // A cell with more points than this gets a grid of its own: hardly any where points are even
+  // (about 3 share the cell of a point), every fuller one where they are not.
+  static constexpr std::int32_t kCrowdedIfEven = 16;
+  static constexpr std::int32_t kCrowdedIfUneven = 6;
+  static constexpr double kEven = 4.0;
+
+  // Cells of a grid with more points than this are given grids of their own, by the sum of the
+  // squares of the numbers in its cells.
+  static std::int32_t crowd(double squares, std::int64_t count) {
+    const double sharing = squares / static_cast<double>(count);
+    return sharing < kEven ? kCrowdedIfEven : kCrowdedIfUneven;
+  }
+
   GridBuilder(PointGrid& grid, const PointRows& rows, Team& team)
       : grid_(grid), rows_(rows), team_(team), parts_(team.size()) {}
 
@@ -35,12 +49,6 @@ class GridBuilder {
   }
 
  private:
-  static constexpr double kPointsPerCell = 2.0;
-  // A cell with more points than this gets a grid of its own: hardly any where points are even
-  // (about 3 share the cell of a point), every fuller one where they are not.
-  static constexpr std::int32_t kCrowdedIfEven = 16;
-  static constexpr std::int32_t kCrowdedIfUneven = 6;
-  static constexpr double kEven = 4.0;
   // Cells up to here are sorted by insertion.
   static constexpr std::int32_t kShort = 32;
   // Each level divides its box by the number of its points; what is crowded still is at points
@@ -189,8 +197,7 @@ class GridBuilder {
   bool nest_top() {
     double squares = 0.0;
     for (const Part& part : parts_) squares += part.squares;
-    const double sharing = squares / static_cast<double>(rows_.count);
-    crowded_ = sharing < kEven ? kCrowdedIfEven : kCrowdedIfUneven;
+    crowded_ = crowd(squares, rows_.count);
     std::vector<std::int64_t> cells;
     for (const Part& part : parts_) {
       cells.insert(cells.end(), part.full_cells.begin(), part.full_cells.end());

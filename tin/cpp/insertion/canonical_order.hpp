@@ -1,8 +1,7 @@
 // Canonical order: triangles numbered as the growth would have made them.
 //
-// A triangle belongs to its first vertex in the sweep and begins with it. The triangles of a
-// vertex form sectors; sectors are ordered by the vertex they start at, triangles within one
-// counter-clockwise. A vertex that owns its whole star starts at its nearest neighbour.
+// A triangle belongs to its first vertex in the sweep and begins with it; those of one vertex are
+// ordered as in star_order.hpp.
 //
 // Triangles are dealt out to their owners by counting, in the order of the mesh, and put in order
 // within each owner, two or three at a time, where they lie. No walk about a vertex is needed.
@@ -19,6 +18,7 @@
 #include "../index/grid.hpp"
 #include "../predicates/predicates.hpp"
 #include "ghost_mesh.hpp"
+#include "star_order.hpp"
 
 namespace tinsmith {
 
@@ -62,15 +62,6 @@ class CanonicalOrder {
   }
 
  private:
-  struct Ray {  // a triangle of the star in hand, without the vertex that owns it
-    Vertex from, to;
-    Triangle triangle;
-    std::int32_t next;  // the ray that starts at `to`
-    bool is_start;      // no ray ends at `from`
-  };
-  static constexpr std::int32_t kNoRay = -1;
-  static constexpr std::int32_t kFewRays = 12;  // so few are compared all with all
-
   template <typename KeepGoing>
   bool in_blocks(std::int64_t count, KeepGoing&& keep_going,
                  void (CanonicalOrder::*work)(std::int64_t, std::int64_t)) {
@@ -157,76 +148,20 @@ class CanonicalOrder {
   }
 
   void order_star(Vertex v, std::int32_t begin, std::int32_t end) {
-    rays_.clear();
+    star_.clear();
     for (std::int32_t i = begin; i < end; ++i) {
       const std::int32_t* const corner = corners_ + std::int64_t{3} * i;
-      rays_.push_back(
-          {Vertex{corner[1]}, Vertex{corner[2]}, triangle_numbered(neighbors_[i]), kNoRay, true});
+      star_.add({Vertex{corner[1]}, Vertex{corner[2]}, neighbors_[i]});
     }
-    if (end - begin <= kFewRays) {
-      link_few_rays();
-    } else {
-      link_many_rays();
-    }
-    starts_.clear();
-    for (std::int32_t i = 0; i < end - begin; ++i) {
-      if (rays_[i].is_start) starts_.push_back(i);
-    }
-    if (starts_.empty()) starts_.push_back(nearest_ray(v));
-    std::sort(starts_.begin(), starts_.end(),
-              [this](std::int32_t a, std::int32_t b) { return rays_[a].from < rays_[b].from; });
-    for (const std::int32_t start : starts_) begin = number_sector(start, begin);
-  }
-
-  void link(Ray& ray, std::int32_t next) {
-    ray.next = next;
-    if (next != kNoRay) rays_[next].is_start = false;
-  }
-
-  void link_few_rays() {
-    for (Ray& ray : rays_) {
-      std::int32_t next = kNoRay;
-      for (std::size_t i = 0; i < rays_.size(); ++i) {
-        next = rays_[i].from == ray.to ? static_cast<std::int32_t>(i) : next;
-      }
-      link(ray, next);
-    }
-  }
-
-  void link_many_rays() {
-    std::sort(rays_.begin(), rays_.end(),
-              [](const Ray& a, const Ray& b) { return a.from < b.from; });
-    for (Ray& ray : rays_) {
-      const auto found =
-          std::lower_bound(rays_.begin(), rays_.end(), ray.to,
-                           [](const Ray& other, Vertex to) { return other.from < to; });
-      const bool is_found = found != rays_.end() && found->from == ray.to;
-      link(ray, is_found ? static_cast<std::int32_t>(found - rays_.begin()) : kNoRay);
-    }
-  }
-
-  std::int32_t nearest_ray(Vertex v) const {
-    const Point center = grid_.point(v);
-    const auto is_nearer = [&](const Ray& a, const Ray& b) {
-      const int order = compare_distances(center, grid_.point(a.from), grid_.point(b.from));
-      return order < 0 || (order == 0 && a.from < b.from);
-    };
-    const auto nearest = std::min_element(rays_.begin(), rays_.end(), is_nearer);
-    return static_cast<std::int32_t>(nearest - rays_.begin());
-  }
-
-  // Returns the place after the sector's last.
-  std::int32_t number_sector(std::int32_t start, std::int32_t place) {
-    std::int32_t i = start;
-    do {
-      const Ray& ray = rays_[i];
-      std::int32_t* const corner = corners_ + std::int64_t{3} * place;
+    star_.put_in_order([this, v](Vertex a, Vertex b) {
+      return compare_distances(grid_.point(v), grid_.point(a), grid_.point(b));
+    });
+    for (const StarOrder::Ray& ray : star_) {
+      std::int32_t* const corner = corners_ + std::int64_t{3} * begin;
       corner[1] = number(ray.from);
       corner[2] = number(ray.to);
-      number_of_[number(ray.triangle)] = triangle_numbered(place++);
-      i = ray.next;
-    } while (i != kNoRay && i != start);
-    return place;
+      number_of_[ray.triangle] = triangle_numbered(begin++);
+    }
   }
 
   void write_neighbors(std::int64_t begin, std::int64_t end) {
@@ -252,8 +187,7 @@ class CanonicalOrder {
   std::vector<std::int32_t> end_of_;  // of each owner's triangles, the ghost's in front
   std::int32_t* corners_ = nullptr;
   std::int32_t* neighbors_ = nullptr;
-  std::vector<Ray> rays_;
-  std::vector<std::int32_t> starts_;
+  StarOrder star_;
 };
 
 }  // namespace tinsmith

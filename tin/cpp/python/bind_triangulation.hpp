@@ -97,6 +97,7 @@ inline void bind_triangulation(nb::module_& m) {
   m.attr("MOST_POINTS") = kMostPoints;
   nb::enum_<Method>(m, "Method", "How to build; the result is the same.")
       .value("AUTOMATIC", Method::kAutomatic)
+      .value("GROWTH_OR_INSERTION", Method::kGrowthOrInsertion)
       .value("GROWTH", Method::kGrowth)
       .value("INSERTION", Method::kInsertion);
   const auto fastest = vector_paths().back().name;
