@@ -15,6 +15,7 @@ from ...base.ranges import describe_span, require_degrees
 from ...base.records import require, require_finite
 from ...base.sentences import coordinate, counted, height
 from .. import _kernel
+from ..constraints import Clip
 from ..constraints.constraint_set import (
     LineSet,
     as_sequence,
@@ -25,7 +26,6 @@ from ..constraints.constraint_set import (
     require_length,
 )
 from ..constraints.polygons import starts_with_elevations
-from ..constraints.pslg import Clip
 from ..validation.points import as_masked_points, require_three
 from ..validation.threads import thread_count
 from .reference import adds_to, settle_crs

@@ -8,14 +8,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ...base.sentences import height
-from ..constraints.breaklines import Lines
+from ..constraints import Lines
 from ..report import LEFT_OUT, Report, Unmended
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from ...base.arrays import Int32Array, Int64Array
-    from ..constraints.breaklines import Breakline
+    from ..constraints import Breakline
     from ..report import Edit
 
 _MERGES = [one.name for one in fields(Report) if one.name.startswith("merged_")] + [

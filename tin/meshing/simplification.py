@@ -18,7 +18,7 @@ from ...base.progress import Progress
 from .. import _kernel, topology
 from ..building.version import Version
 from ..constraints.pslg import build_mesh_of_growth, find_lines_in
-from ..editing.accounts import account_for_edits, account_for_removed, renumber_vertices
+from ..editing import account_for_edits, account_for_removed, renumber_vertices
 from ..report import Simplification
 from ..surface import TIN
 from ..triangulation import Triangulation

@@ -17,7 +17,7 @@ from ...base.sentences import counted
 from .. import _kernel
 from ..building.survey import Survey
 from ..construction import triangulate
-from ..meshing.shape_quality import measure_smallest_angles
+from ..meshing import measure_smallest_angles
 from ..validation.points import as_points
 from .cover import cover
 from .faults import find_overlapping, find_violating

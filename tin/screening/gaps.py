@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from ...base.georeference.units import find_scales
+from ...base.georeference import find_scales
 from ...base.sentences import counted
 from .. import _kernel
 from ..constraints.clipping import trim

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from ..constraints.constraint_table import label_line
+from ..constraints import label_line
 from ..topology import find_offsets, find_owners
 from .nodata import CUSTOMARY, is_beyond_range, is_customary
 from .residuals import Residuals, fit_planes, measure_offsets

@@ -9,6 +9,7 @@ from .agreement import (
     find_plane_units,
     require_same_crs,
 )
+from .units import find_scales
 
 __all__ = [
     "PlaneUnits",
@@ -17,5 +18,6 @@ __all__ = [
     "agree",
     "describe_unknown",
     "find_plane_units",
+    "find_scales",
     "require_same_crs",
 ]
