@@ -29,7 +29,7 @@ from ..io.registry import SourceHeader, find_writer, list_writers
 from ..io.streaming import describe_source, stream_points
 from ..io.writing import write as write_file
 from ..terrain.gridding import describe_extent
-from ..terrain.relief.statistics import PERCENTILES
+from ..terrain.relief import PERCENTILES
 from ..tin import Survey
 from ..tin.validation import as_xy
 from .assembling import WRITERS, find_writable

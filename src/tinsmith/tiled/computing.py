@@ -7,7 +7,6 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager, suppress
 from dataclasses import asdict, replace
 from functools import partial
-from importlib import import_module
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from .. import __version__
@@ -23,7 +22,7 @@ from .lines import describe_lines, prepare_lines
 from .reading import StoredPoints, read_inputs
 from .running import Fingerprint, Run
 from .store import count_by_cells
-from .tasks import PHASE, TileJob, compute_tile, divide_job
+from .tasks import PHASE, TileJob, compute_tile, find_product
 from .voids import add_void_rings
 
 if TYPE_CHECKING:
@@ -66,12 +65,12 @@ def computing(
     Features, Raster, Table, or what a product writes a folder of
         Whose blocks may lie in the folder of the run, which is removed at the end.
     """
-    module = import_module(f"{__package__}.products.{product}")
-    if hasattr(module, "INDEX"):  # by which a folder that it wrote is known
-        require_writable_folder(output, marker=module.INDEX)
+    chosen = find_product(product)
+    if chosen.index:
+        require_writable_folder(output, marker=chosen.index)
     elif output != how.run:
         require_writable(output)
-    options = module.check_options(**asked)
+    options = chosen.check_options(**asked)
     lines = None if cloud.lines is None else _Lines.of(cloud.lines, cloud)
     sources = _look_at(cloud)
     run = Run(how.run or output.with_name(output.name + _SUFFIX))
@@ -94,15 +93,13 @@ def computing(
             points = stored[0]
             _require_no_voids(stored[1:], "the other surface")
             if points.lattice is not None:
-                if not getattr(module, "HAS_LINES", True):
+                if not chosen.has_lines:
                     _require_no_voids([points], "this product")
                 lines = _Lines.of(add_void_rings(points, cloud.lines), cloud)
             if lines is not None:
                 points = lines.prepare(points, run, how, start)
-            settled = module.settle_options(points, _store(options, run), *stored[1:])
-            own = getattr(module, "divide_points", None)
-            cut = divide if own is None else partial(own, settled)
-            tiles = _find_tiles(run, stored[0], how, cut)
+            settled = chosen.settle_options(points, _store(options, run), *stored[1:])
+            tiles = _find_tiles(run, stored[0], how, partial(chosen.divide_points, settled))
             job = TileJob(
                 run.folder,
                 points.folder,
@@ -113,14 +110,13 @@ def computing(
                 points.lines,
             )
             jobs = [replace(job, tile=tile) for tile in tiles]
-            step, divided = start("Triangulating"), getattr(module, "divide_job", divide_job)
-            records = step.run(run, PHASE, compute_tile, jobs, divide=divided)
-            if hasattr(module, "combine"):
-                records = module.combine(run, settled, records, start("Joining"))
+            step = start("Triangulating")
+            done = step.run(run, PHASE, compute_tile, jobs, divide=chosen.divide_job)
+            records = chosen.combine(run, settled, done, start("Joining"))
             points = points.tell_differing(records, cloud.duplicates)
         arrays = {name: value for name, value in options.items() if isinstance(value, Given)}
         with run.refused():
-            made = module.join(points, {**settled, **arrays}, records, run.folder)
+            made = chosen.join(points, {**settled, **arrays}, records, run.folder)
         run.clear_beside(output)
         yield made
     if not how.keep:

@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from importlib import import_module
 from time import perf_counter
-from typing import TYPE_CHECKING, Any, NamedTuple, Protocol, cast
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -15,7 +15,7 @@ from ..base.atomic import replacing
 from ..base.errors import MissingExtraError, ReadError, TinsmithError, WriteError
 from ..terrain.parts import are_owned, are_owned_triangles
 from ..tin.tiling import LocalTriangulation, find_differing, intersect, triangulate_box, widen
-from .division import Tile, quarter
+from .division import Tile, divide, quarter
 from .lines import open_lines
 from .reading import name_rows, open_store
 from .running import FINAL, Record, Run, hash_file
@@ -23,14 +23,16 @@ from .running import FINAL, Record, Run, hash_file
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from ..base.arrays import AnyArray, Float64Array
+    from ..base.arrays import AnyArray, Float64Array, Int64Array
     from ..base.policies import DuplicatePolicy
     from ..base.types import Bounds
     from .lines import StoredLines
     from .reading import StoredPoints
+    from .running import Phase
     from .store import PointStore
 
 PHASE = "tiles"
+_FEWEST_TO_DIVIDE = 1_000
 HALO = 10.0
 """Mean distances between points that are read around a box at once: more does not settle more
 triangles (their circles leave any margin where points are sparse), less leads to more questions."""
@@ -182,37 +184,98 @@ def join_elevations(records: Mapping[str, Record]) -> tuple[float, float]:
     return min(low for low, _ in found), max(high for _, high in found)
 
 
-class TileProduct(Protocol):
-    """What a module of products has.
-
-    One that writes a folder names by ``INDEX`` the file in it by which such a folder is known. One
-    that needs tiles of its own has ``divide_points`` and ``divide_job``; ``combine``, if it is
-    there, does further steps with the records of all tiles. ``IS_OF_SURFACE`` is False of one that
-    is not computed from triangles, ``HAS_ALL_TILES`` True of one that has something also in tiles
-    that the surface does not reach.
-    """
-
-    def check_options(self, **asked: Any) -> Mapping[str, Any]:
-        """Return plain options, or refuse what is none."""
-
-    def settle_options(self, points: StoredPoints, options: Mapping[str, Any]) -> Mapping[str, Any]:
-        """Return options that depend on all points, too, such as the cells of a raster."""
-
-    def compute(self, part: Part) -> tuple[int, Mapping[str, Any], list[str]]:
-        """Return points, plain values, and the names of files that were written."""
-
-    def join(
-        self,
-        points: StoredPoints,
-        options: Mapping[str, Any],
-        records: Mapping[str, Record],
-        folder: Path,
-    ) -> Any:
-        """Return the product of all tiles."""
-
-
 Made = tuple[int, Mapping[str, Any], list[str]]
 """What a task made: points, plain values, and the names of files in the folder of its step."""
+
+
+def add_units(points: StoredPoints, options: Mapping[str, Any]) -> dict[str, Any]:
+    """Return options with the CRS and the unit of elevations of all points, as plain values."""
+    crs, unit = points.crs, points.elevation_unit
+    return {
+        **options,
+        "crs": None if crs is None else str(crs),
+        "elevation_unit": None if unit is None else unit.text,
+    }
+
+
+def keep_records(
+    run: Run, options: Mapping[str, Any], records: Mapping[str, Record], phase: Phase
+) -> Mapping[str, Record]:
+    """Return the records of all tiles: of a product without further steps."""
+    del run, options, phase
+    return records
+
+
+def divide_job(job: TileJob) -> list[TileJob]:
+    """Return the quarters of a tile that was too large, none if it has few points."""
+    if job.tile.count < _FEWEST_TO_DIVIDE:
+        return []
+    bounds = open_store(job.points).bounds
+    return [replace(job, tile=tile) for tile in quarter(job.tile, bounds)]
+
+
+def divide_plane(
+    options: Mapping[str, Any],
+    counts: Int64Array,
+    bounds: Bounds,
+    *,
+    most: int,
+    fewest_tiles: int,
+) -> list[Tile]:
+    """Return tiles of about equally many points, whatever the options are."""
+    del options
+    return divide(counts, bounds, most=most, fewest_tiles=fewest_tiles)
+
+
+@dataclass(frozen=True)
+class TileProduct:
+    """How a product is computed in tiles; each module of products has one, ``PRODUCT``.
+
+    Attributes
+    ----------
+    check_options : callable
+        Returns plain options of what a caller asked for, or refuses what is none.
+    compute : callable
+        Computes a :class:`Part`, and returns points, plain values, and the names of files.
+    join : callable
+        Returns the product, of all points, the options, the records of all tiles, and the folder.
+    settle_options : callable
+        Returns options that depend on all points, too; those of another cloud follow.
+    combine : callable
+        Does further steps with the records of all tiles, and returns all records.
+    divide_points : callable
+        Returns the tiles, by the options and where points lie.
+    divide_job : callable
+        Returns the parts of a tile that was too large.
+    index : str
+        Of one that writes a folder: the file in it by which such a folder is known.
+    has_lines : bool
+        Whether the surface may have lines, as that of a raster with voids has.
+    has_all_tiles : bool
+        Whether tiles that the surface does not reach have something, too.
+    is_of_surface : bool
+        Whether it is computed from triangles.
+    """
+
+    check_options: Callable[..., Mapping[str, Any]]
+    compute: Callable[[Part], Made]
+    join: Callable[[StoredPoints, Mapping[str, Any], Mapping[str, Record], Path], Any]
+    settle_options: Callable[..., Mapping[str, Any]] = add_units
+    combine: Callable[
+        [Run, Mapping[str, Any], Mapping[str, Record], Phase], Mapping[str, Record]
+    ] = keep_records
+    divide_points: Callable[..., list[Tile]] = divide_plane
+    divide_job: Callable[[TileJob], list[TileJob]] = divide_job
+    index: str = ""
+    has_lines: bool = True
+    has_all_tiles: bool = False
+    is_of_surface: bool = True
+
+
+def find_product(name: str) -> TileProduct:
+    """Return a product by the name of its module."""
+    found: TileProduct = import_module(f"{__package__}.products.{name}").PRODUCT
+    return found
 
 
 def do_task(
@@ -278,22 +341,11 @@ def compute_tile(job: TileJob) -> Record:
 
 
 def _compute_tile(job: TileJob) -> Made:
-    product = cast("TileProduct", import_module(f"{__package__}.products.{job.product}"))
+    product = find_product(job.product)
     part = Part(job, open_store(job.points), {})
-    is_wanted = part.may_have_surface or getattr(product, "HAS_ALL_TILES", False)
+    is_wanted = part.may_have_surface or product.has_all_tiles
     points, values, names = product.compute(part) if is_wanted else (0, {}, [])
     told = {}
-    if job.is_told and getattr(product, "IS_OF_SURFACE", True):
+    if job.is_told and product.is_of_surface:
         told["differing"] = measure_differing(part.store, job.tile.box, part.differing)
     return points, {**values, **told}, names
-
-
-def divide_job(job: TileJob) -> list[TileJob]:
-    """Return the quarters of a tile that was too large, none if it has few points."""
-    if job.tile.count < _FEWEST_TO_DIVIDE:
-        return []
-    bounds = open_store(job.points).bounds
-    return [replace(job, tile=tile) for tile in quarter(job.tile, bounds)]
-
-
-_FEWEST_TO_DIVIDE = 1_000

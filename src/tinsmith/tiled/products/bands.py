@@ -11,7 +11,14 @@ from ...base.crs import CRS, Unit
 from ...terrain.isolines import LevelOptions, Levels, as_levels
 from ...terrain.parts import bands
 from ...terrain.surface import measure_rounding
-from ..tasks import join_elevations, load_arrays, measure_elevations, save_arrays
+from ..tasks import (
+    TileProduct,
+    add_units,
+    join_elevations,
+    load_arrays,
+    measure_elevations,
+    save_arrays,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -35,15 +42,13 @@ def check_options(
 def settle_options(points: StoredPoints, options: Mapping[str, Any]) -> dict[str, Any]:
     """Settle the levels, when the elevations of all points are known."""
     found = _make_levels(options).for_bands_between(*points.elevations)
-    box, crs, unit = points.bounds, points.crs, points.elevation_unit
+    box = points.bounds
     corners = np.array([[box.xmin, box.ymin], [box.xmax, box.ymax]])
     return {
-        **options,
+        **add_units(points, options),
         "values": found.values.tolist(),
         "rounding": measure_rounding(corners),
         "extent": float(np.ptp(corners, axis=0).sum()),
-        "crs": None if crs is None else str(crs),
-        "elevation_unit": None if unit is None else unit.text,
     }
 
 
@@ -84,3 +89,6 @@ def join(
     made = bands.join(parts, _make_options(options))
     notes = _make_levels(options).for_bands_between(*join_elevations(records)).notes
     return replace(made, notes=[*points.notes, *made.notes, *notes])
+
+
+PRODUCT = TileProduct(check_options, compute, join, settle_options=settle_options)

@@ -10,7 +10,14 @@ import numpy as np
 from ...base.crs import CRS, Unit
 from ...terrain.isolines import LevelOptions, Levels, as_levels
 from ...terrain.parts import contours, require_local
-from ..tasks import join_elevations, load_arrays, measure_elevations, save_arrays
+from ..tasks import (
+    TileProduct,
+    add_units,
+    join_elevations,
+    load_arrays,
+    measure_elevations,
+    save_arrays,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -43,13 +50,10 @@ def check_options(
 def settle_options(points: StoredPoints, options: Mapping[str, Any]) -> dict[str, Any]:
     """Settle the levels, when the elevations of all points are known."""
     found = _make_levels(options).for_lines_between(*points.elevations)
-    crs, unit = points.crs, points.elevation_unit
     return {
-        **options,
+        **add_units(points, options),
         "values": found.values.tolist(),
         "is_index": found.is_index.tolist(),
-        "crs": None if crs is None else str(crs),
-        "elevation_unit": None if unit is None else unit.text,
     }
 
 
@@ -96,3 +100,6 @@ def _load(records: Mapping[str, Record], folder: Path) -> Iterator[contours.Cont
             arrays = load_arrays(folder, record)
             finished = {name: arrays.pop(f"finished_{name}") for name in contours.Lines._fields}
             yield contours.ContourPart(finished=contours.Lines(**finished), **arrays)
+
+
+PRODUCT = TileProduct(check_options, compute, join, settle_options=settle_options)

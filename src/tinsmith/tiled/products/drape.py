@@ -14,6 +14,7 @@ from ...terrain.sections import check_features, drape, drape_points
 from ...terrain.surface import as_segments
 from ..along import compute_along, join_along, keep_lines
 from ..given import GivenPlaces
+from ..tasks import TileProduct
 from . import places
 
 if TYPE_CHECKING:
@@ -25,8 +26,6 @@ if TYPE_CHECKING:
     from ..running import Record
     from ..tasks import Part
 
-HAS_ALL_TILES = True
-"""Points beyond the surface count, too."""
 _LINES = "lines"
 """Option and folder of lines and rings."""
 
@@ -80,3 +79,8 @@ def join(
         tin = join_along(points, options[_LINES], records, folder)
         made = drape(tin, options[_LINES].value, outside=outside)
     return replace(made, notes=[*points.notes, *made.notes])
+
+
+PRODUCT = TileProduct(
+    check_options, compute, join, settle_options=settle_options, has_all_tiles=True
+)

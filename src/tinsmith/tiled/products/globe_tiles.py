@@ -45,7 +45,7 @@ from ...io.mesh.quantized_mesh import (
 )
 from ...terrain.parts import are_owned
 from ...terrain.simplification.pyramid import Mesh, Node, Quadtree, join_nodes, simplify
-from ..tasks import do_task, save_arrays
+from ..tasks import TileProduct, add_units, do_task, save_arrays
 from .squares import (
     NodeJob,
     find_meshes,
@@ -67,8 +67,6 @@ if TYPE_CHECKING:
 
 INDEX = "layer.json"
 """What the folder holds, by which such a folder is known."""
-HAS_LINES = False
-"""Squares are those of points alone."""
 
 _MOST_TRIANGLES = 1 << 19
 """Of a block that is cut at a time, about."""
@@ -97,17 +95,12 @@ def settle_options(points: StoredPoints, options: Mapping[str, Any]) -> dict[str
     CrsError
         If the CRS is not known.
     """
-    crs, unit = points.crs, points.elevation_unit
-    if crs is None:
+    if points.crs is None:
         raise CrsError(
             "Quantized-mesh tiles lie on the globe, and the CRS of the points is not known: "
             "declare it (`crs`)."
         )
-    return {
-        **options,
-        "crs": str(crs),
-        "elevation_unit": None if unit is None else unit.text,
-    }
+    return add_units(points, options)
 
 
 def compute(part: Part) -> Made:
@@ -525,3 +518,14 @@ def join(
         if name.endswith(".terrain")
     }
     return GlobeTiles(crs, _join_corners(filled), files, options["gzipped"])
+
+
+PRODUCT = TileProduct(
+    check_options,
+    compute,
+    join,
+    index=INDEX,
+    has_lines=False,
+    settle_options=settle_options,
+    combine=combine,
+)

@@ -30,6 +30,7 @@ from ...terrain.parts.ground import GroundWindow, choose_reach
 from ..labelled import GroundTiles, name_files
 from ..reading import ROWS_OF_A_FILE
 from ..running import Fingerprint, Record, Run, hash_file
+from ..tasks import TileProduct
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -46,9 +47,6 @@ FILES = "files"
 _UNCLASSIFIED, _GROUND = 1, 2
 _CHOOSING = ("where", "duplicates", "candidates")
 """Options of the points that are none of the reader."""
-
-
-IS_OF_SURFACE = False
 
 
 def check_options(
@@ -292,3 +290,13 @@ def join(
     )
     notes = (*points.notes, *options["notes"], reach)
     return GroundTiles(tuple(files), dict(sorted(counts.items())), points.crs, notes)
+
+
+PRODUCT = TileProduct(
+    check_options,
+    compute,
+    join,
+    settle_options=settle_options,
+    combine=combine,
+    is_of_surface=False,
+)

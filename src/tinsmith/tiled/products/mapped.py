@@ -10,6 +10,7 @@ from ...base.atomic import replacing
 from ...base.crs import CRS, Unit
 from ...base.errors import OptionError
 from ...terrain.parts import are_owned, as_surface
+from ..tasks import TileProduct
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -33,16 +34,6 @@ def check_options(*, function: Any) -> dict[str, Any]:
     if module in (None, "__main__") or "<" in name or not callable(function):
         raise OptionError("function", function, "a function of a module that workers can import")
     return {"function": f"{module}:{name}"}
-
-
-def settle_options(points: StoredPoints, options: Mapping[str, Any]) -> dict[str, Any]:
-    """Add the units of all points."""
-    crs, unit = points.crs, points.elevation_unit
-    return {
-        **options,
-        "crs": None if crs is None else str(crs),
-        "elevation_unit": None if unit is None else unit.text,
-    }
 
 
 def compute(part: Part) -> tuple[int, dict[str, Any], list[str]]:
@@ -74,3 +65,6 @@ def join(
             with (folder / name).open("rb") as file:
                 made.append(pickle.load(file))
     return made
+
+
+PRODUCT = TileProduct(check_options, compute, join)

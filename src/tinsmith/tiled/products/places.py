@@ -16,7 +16,7 @@ from ...terrain.parts import are_owned, places, require_local
 from ...tin.building import find_crs
 from ...tin.validation import as_xy
 from ..given import GivenPlaces, read_places
-from ..tasks import load_arrays, save_arrays
+from ..tasks import TileProduct, load_arrays, save_arrays
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -27,8 +27,6 @@ if TYPE_CHECKING:
     from ..running import Record
     from ..tasks import Part
 
-HAS_ALL_TILES = True
-"""Places beyond the surface count, too."""
 PLACES = "places"
 """Option and folder of the places."""
 
@@ -93,3 +91,8 @@ def join_elevations(
         if record.files
     )
     return places.join(parts, options["count"], known=options["known"])
+
+
+PRODUCT = TileProduct(
+    check_options, compute, join, settle_options=settle_options, has_all_tiles=True
+)

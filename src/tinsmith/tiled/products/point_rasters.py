@@ -25,6 +25,7 @@ from ...terrain.gridding import (
 from ...terrain.parts import as_surface
 from ..cells import Blocks, check_cells, make_grid, name_block, save_block, settle_cells
 from ..reading import open_store
+from ..tasks import TileProduct
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -37,8 +38,6 @@ if TYPE_CHECKING:
     from ..running import Record
     from ..tasks import Part
 
-HAS_ALL_TILES = True
-"""Points beyond the surface count, too."""
 _MOST_POINTS = 1_000_000
 """That are taken at a time: there may be many more above the ground than in it."""
 
@@ -180,3 +179,8 @@ def join(
         name=value,
         notes=[*points.notes, *options["notes"], *describe_points_outside(outside, count)],
     )
+
+
+PRODUCT = TileProduct(
+    check_options, compute, join, settle_options=settle_options, has_all_tiles=True
+)

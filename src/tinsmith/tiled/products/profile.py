@@ -12,6 +12,7 @@ from ...base.georeference import require_same_crs
 from ...terrain.sections import lines_to_segments, profile
 from ...terrain.surface import as_features
 from ..along import compute_along, join_along, keep_lines
+from ..tasks import TileProduct
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -62,3 +63,6 @@ def join(
     tin = join_along(points, lines, records, folder)
     made = profile(tin, lines.value, interval=options["interval"], start=options["start"])
     return replace(made, notes=[*points.notes, *made.notes])
+
+
+PRODUCT = TileProduct(check_options, compute, join, settle_options=settle_options)

@@ -9,7 +9,7 @@ import numpy as np
 from ...tin.tiling import TilesProof, TileTriangles, check_tiles, find_outline, reduce_to_hull
 from ..lines import open_lines
 from ..reading import open_store
-from ..tasks import load_arrays, save_arrays
+from ..tasks import TileProduct, load_arrays, save_arrays
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -23,12 +23,6 @@ if TYPE_CHECKING:
 def check_options() -> dict[str, Any]:
     """Return no options."""
     return {}
-
-
-def settle_options(points: StoredPoints, options: Mapping[str, Any]) -> dict[str, Any]:
-    """Return no options."""
-    del points
-    return dict(options)
 
 
 def compute(part: Part) -> tuple[int, dict[str, Any], list[str]]:
@@ -70,3 +64,6 @@ def _load(records: Mapping[str, Record], folder: Path) -> Iterator[TileTriangles
     for record in records.values():
         if record.files:
             yield TileTriangles(tile=record.key, **load_arrays(folder, record))
+
+
+PRODUCT = TileProduct(check_options, compute, join)

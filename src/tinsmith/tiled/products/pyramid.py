@@ -27,10 +27,12 @@ from ...terrain.simplification.pyramid import (
     join_nodes,
 )
 from ...terrain.simplification.pyramid import simplify as simplify_node
-from ..tasks import do_task
+from ..tasks import TileProduct, add_units, do_task
 from .squares import (
     NodeJob,
     as_node,
+    divide_job,
+    divide_points,
     find_meshes,
     list_finest,
     make_levels,
@@ -38,8 +40,6 @@ from .squares import (
     save_mesh,
     settle_quadtree,
 )
-from .squares import divide_job as divide_job
-from .squares import divide_points as divide_points
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -50,8 +50,6 @@ if TYPE_CHECKING:
     from ..tasks import Part
 
 INDEX = "tileset.json"
-HAS_LINES = False
-"""Squares are those of points alone."""
 """What the folder holds, by which such a folder is known."""
 
 
@@ -72,18 +70,15 @@ def settle_options(points: StoredPoints, options: Mapping[str, Any]) -> dict[str
     PointsError
         If all points lie on one line.
     """
-    crs, unit = points.crs, points.elevation_unit
-    if crs is None:
+    if points.crs is None:
         raise CrsError(
             "3D Tiles lie on the globe, and the CRS of the points is not known: declare it (`crs`)."
         )
     return {
-        **options,
+        **add_units(points, options),
         "quadtree": settle_quadtree(points, options["node_points"]),
         "bounds": asdict(points.bounds),
         "elevations": list(points.elevations),
-        "crs": str(crs),
-        "elevation_unit": None if unit is None else unit.text,
     }
 
 
@@ -221,3 +216,16 @@ def join(
             (name,) = (one for one in record.files if one.endswith(f"/{node.key}.glb"))
             files[node] = folder / name
     return Pyramid(_Plan.of(options).scene, contents, files, points.notes)
+
+
+PRODUCT = TileProduct(
+    check_options,
+    compute,
+    join,
+    index=INDEX,
+    has_lines=False,
+    settle_options=settle_options,
+    combine=combine,
+    divide_points=divide_points,
+    divide_job=divide_job,
+)

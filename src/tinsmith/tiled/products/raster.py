@@ -28,6 +28,7 @@ from ...terrain.parts.rasters import (
 )
 from ...terrain.surface import as_light
 from ..cells import Blocks, check_cells, make_grid, name_block, save_block, settle_cells
+from ..tasks import TileProduct, add_units
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -83,13 +84,10 @@ def settle_options(points: StoredPoints, options: Mapping[str, Any]) -> dict[str
     """Settle the cells, when the bounds of all points are known."""
     cells = settle_cells(points, options)
     smooth = points.is_raster if options["smooth"] is None else options["smooth"]
-    crs, unit = points.crs, points.elevation_unit
     return {
-        **options,
+        **add_units(points, options),
         **cells,
         "smooth": smooth and options["value"] != "elevation" and options["at"] == "center",
-        "crs": None if crs is None else str(crs),
-        "elevation_unit": None if unit is None else unit.text,
     }
 
 
@@ -159,3 +157,6 @@ def _describe_slopes(options: Mapping[str, Any]) -> str:
     if options["at"] == "mean":
         return DESCRIBED_MEANS
     return describe_smooth(is_smooth=options["smooth"])
+
+
+PRODUCT = TileProduct(check_options, compute, join, settle_options=settle_options)

@@ -17,9 +17,8 @@ from ...base.errors import PointsError
 from ...io.mesh.ply import SurfaceBlocks
 from ...terrain.simplification.pyramid import Mesh, Node, Quadtree
 from ..assembling import find_writable, read_blocks, require_numbers
-from .squares import as_node, list_finest, settle_quadtree
-from .squares import divide_job as divide_job
-from .squares import divide_points as divide_points
+from ..tasks import TileProduct
+from .squares import as_node, divide_job, divide_points, list_finest, settle_quadtree
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -185,3 +184,13 @@ def join(
         n_points, n_triangles, vertices, triangles, points.crs, points.elevation_unit
     )
     return SimplifiedSurface(blocks, error)
+
+
+PRODUCT = TileProduct(
+    check_options,
+    compute,
+    join,
+    settle_options=settle_options,
+    divide_points=divide_points,
+    divide_job=divide_job,
+)

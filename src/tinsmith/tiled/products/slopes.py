@@ -10,8 +10,8 @@ from ...base.crs import CRS, Unit
 from ...base.errors import choice
 from ...base.policies import SlopeUnit
 from ...terrain.parts import statistics
-from ...terrain.relief.statistics import PERCENTILES, as_table
-from ..tasks import load_arrays, save_arrays
+from ...terrain.relief import PERCENTILES, as_table
+from ..tasks import TileProduct, load_arrays, save_arrays
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -31,16 +31,6 @@ def check_options(
     """Return plain options, or refuse what is none."""
     shares = as_percentages("percentiles", percentiles).tolist()
     return {"unit": choice("unit", unit, SlopeUnit), "percentiles": shares}
-
-
-def settle_options(points: StoredPoints, options: Mapping[str, Any]) -> dict[str, Any]:
-    """Add the units of all points."""
-    crs, unit = points.crs, points.elevation_unit
-    return {
-        **options,
-        "crs": None if crs is None else str(crs),
-        "elevation_unit": None if unit is None else unit.text,
-    }
 
 
 def compute(part: Part) -> tuple[int, dict[str, Any], list[str]]:
@@ -69,3 +59,6 @@ def _load(records: Mapping[str, Record], folder: Path) -> Iterator[statistics.St
     for record in records.values():
         if record.files:
             yield statistics.StatisticsPart(**load_arrays(folder, record))
+
+
+PRODUCT = TileProduct(check_options, compute, join)

@@ -21,7 +21,7 @@ from ...tin import TIN
 from ..numbering import NUMBER, number_vertices
 from ..reading import open_store
 from ..running import hash_file
-from ..tasks import save_arrays
+from ..tasks import TileProduct, save_arrays
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -55,16 +55,6 @@ def check_options(*, format: str, write: Mapping[str, Any] | None = None) -> dic
     for name in given.keys() - {*chosen.options("write")}:
         raise OptionError("write", name, f"an option of the writer of {chosen.name} files")
     return {"format": chosen.name, "write": given}
-
-
-def settle_options(points: StoredPoints, options: Mapping[str, Any]) -> dict[str, Any]:
-    """Add the units of all points."""
-    crs, unit = points.crs, points.elevation_unit
-    return {
-        **options,
-        "crs": None if crs is None else str(crs),
-        "elevation_unit": None if unit is None else unit.text,
-    }
 
 
 def compute(part: Part) -> tuple[int, dict[str, Any], list[str]]:
@@ -204,3 +194,6 @@ def join(
     count = number_vertices(own, used, made, np.array([chunk.first for chunk in chunks]))
     filled = {key: record for key, record in records.items() if record.values.get("triangles")}
     return SurfaceParts(points, options, filled, folder, count)
+
+
+PRODUCT = TileProduct(check_options, compute, join, index=INDEX)

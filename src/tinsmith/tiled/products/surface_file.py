@@ -21,7 +21,7 @@ from ..assembling import (
 )
 from ..numbering import NUMBER, number_vertices
 from ..reading import open_store
-from ..tasks import save_arrays
+from ..tasks import TileProduct, save_arrays
 from .surface import save_rows
 
 if TYPE_CHECKING:
@@ -41,11 +41,6 @@ _JOINED = "joined"
 def check_options(*, format: str) -> dict[str, Any]:  # noqa: A002 - as in write
     """Return plain options, or refuse a format that needs all of the surface at a time."""
     return {"format": find_writable(format)}
-
-
-def settle_options(points: StoredPoints, options: Mapping[str, Any]) -> dict[str, Any]:  # noqa: ARG001
-    """Return the options: none depends on the points."""
-    return dict(options)
 
 
 def compute(part: Part) -> tuple[int, dict[str, Any], list[str]]:
@@ -115,3 +110,6 @@ def _find_stem(folder: Path, record: Record) -> Path:
 def _cut(vertices: Float64Array) -> Iterator[Float64Array]:
     for start in range(0, len(vertices), MOST_AT_A_TIME):
         yield vertices[start : start + MOST_AT_A_TIME]
+
+
+PRODUCT = TileProduct(check_options, compute, join)

@@ -19,7 +19,7 @@ from ...tin.tiling import find_triangles_at, triangulate_box, widen
 from ..cloud import TiledPoints
 from ..given import Given, load_given
 from ..reading import open_store, tell_differing
-from ..tasks import HALO, load_arrays, measure_differing, save_arrays
+from ..tasks import HALO, TileProduct, load_arrays, measure_differing, save_arrays
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -33,8 +33,6 @@ if TYPE_CHECKING:
     from ..tasks import Part
 
 _PURPOSE = "Volumes"
-HAS_ALL_TILES = True
-"""Of another surface the area beyond this one counts, too."""
 _OTHER = "other"
 """Option and folder of another surface that is in memory."""
 _DIFFERING = "other_differing"
@@ -191,3 +189,8 @@ def join(
         told += tell_differing(records, _DIFFERING, options["other_duplicates"])
     others = [f"The other surface: {note}" for note in told]
     return replace(made, notes=[*points.notes, *others, *options.get("notes", ()), *made.notes])
+
+
+PRODUCT = TileProduct(
+    check_options, compute, join, settle_options=settle_options, has_all_tiles=True
+)
