@@ -261,7 +261,7 @@ class _TileBounds(NamedTuple):
         is_met &= (south <= box.ymax) & (north >= box.ymin)
         return [self.names[k] for k in np.flatnonzero(is_met)]
 
-    def count(self, box: Bounds) -> float:
+    def estimate(self, box: Bounds) -> float:
         """Return about how many triangles lie in a box."""
         west, south, east, north = self.corners.T
         width = np.minimum(east, box.xmax) - np.maximum(west, box.xmin)
@@ -280,7 +280,7 @@ def _list_blocks(folder: Path, levels: _Levels, records: Sequence[Record]) -> li
         box = tree.find_box(node)
         if not bounds.find(box):
             continue
-        if node.level < tree.levels and bounds.count(box) > _MOST_TRIANGLES:
+        if node.level < tree.levels and bounds.estimate(box) > _MOST_TRIANGLES:
             waiting += node.children
             continue
         beside = width * _BESIDE
@@ -425,7 +425,7 @@ def _save_tiles(job: SquareJob, tiles: LevelTiles) -> tuple[list[str], dict[str,
             file,
             names=np.array([[one.x, one.y] for one in names], np.int64),
             counts=np.array([[len(one.steps), len(one.triangles)] for one in found], np.int64),
-            **{
+            **{  # type: ignore[arg-type]
                 kind: np.concatenate([getattr(one, kind) for one in found])
                 for kind in GridTile._fields
             },
