@@ -301,5 +301,5 @@ def test_random_rasters():
 
 @pytest.mark.proof
 @pytest.mark.parametrize("seed", range(4))
-def test_thousands_of_random_rasters(seed):
-    require_random_rasters(np.random.default_rng(seed), 2_000)
+def test_hundreds_of_random_rasters(seed):
+    require_random_rasters(np.random.default_rng(10 + seed), 300)
