@@ -46,7 +46,7 @@ if TYPE_CHECKING:
     from types import TracebackType
     from typing import Self
 
-    from ..base.crs import CRS, Unit
+    from ..base.crs import CRS, CrsLike, Unit, UnitLike
     from .reading import Asked, Call
     from .registry import Blocks
 
@@ -58,8 +58,11 @@ def stream_points(
     path: str | os.PathLike[str],
     *,
     chunk_points: int = 1_000_000,
+    format: str | None = None,  # noqa: A002 - as in read
+    crs: CrsLike | None = None,
+    elevation_unit: UnitLike | None = None,
     check_crs: bool = True,
-    **how: Any,
+    **options: Any,
 ) -> PointStream:
     """Read the points of a file chunk by chunk, in memory that does not grow with the file.
 
@@ -69,7 +72,7 @@ def stream_points(
         A file, or a folder of lidar tiles.
     chunk_points : int
         Points of each chunk; the last has the rest.
-    check_crs, **how
+    format, crs, elevation_unit, check_crs, **options
         As of :func:`tinsmith.read`.
 
     Returns
@@ -102,7 +105,8 @@ def stream_points(
     """
     require_count("chunk_points", chunk_points)
     (file,) = require_paths([path])
-    return PointStream(_stream_path(file, ask(**how), check_crs), int(chunk_points))
+    asked = ask(format=format, crs=crs, elevation_unit=elevation_unit, **options)
+    return PointStream(_stream_path(file, asked, check_crs), int(chunk_points))
 
 
 class PointStream:
@@ -335,14 +339,20 @@ def _measure_size(file: Path) -> int:
 
 
 def describe_source(
-    path: str | os.PathLike[str], *, check_crs: bool = True, **how: Any
+    path: str | os.PathLike[str],
+    *,
+    format: str | None = None,  # noqa: A002 - as in read
+    crs: CrsLike | None = None,
+    elevation_unit: UnitLike | None = None,
+    check_crs: bool = True,
+    **options: Any,
 ) -> SourceHeader:
     """Tell what the headers of a file say of its points, without reading them.
 
     Parameters
     ----------
     path : path-like
-    check_crs, **how
+    format, crs, elevation_unit, check_crs, **options
         As of :func:`tinsmith.read`.
 
     Returns
@@ -356,7 +366,7 @@ def describe_source(
         As :func:`tinsmith.read`, as far as headers tell.
     """
     (file,) = require_paths([path])
-    asked = ask(**how)
+    asked = ask(format=format, crs=crs, elevation_unit=elevation_unit, **options)
     with _opened(file, asked, check_crs) as (inner, call):
         if call.format.describe is None or inner != file:
             return make_source_header(file, call.format.name)
@@ -369,8 +379,11 @@ def read_box(
     path: str | os.PathLike[str],
     bounds: Bounds | Sequence[float],
     *,
+    format: str | None = None,  # noqa: A002 - as in read
+    crs: CrsLike | None = None,
+    elevation_unit: UnitLike | None = None,
     check_crs: bool = True,
-    **how: Any,
+    **options: Any,
 ) -> PointChunk:
     """Read the points of a box where they are in the file, without reading the others.
 
@@ -380,7 +393,7 @@ def read_box(
         A file of which :func:`describe_source` says that it ``has_boxes``.
     bounds : Bounds or (4,) sequence of float
         West, south, east, north in the CRS of the points; the edges belong to it.
-    check_crs, **how
+    format, crs, elevation_unit, check_crs, **options
         As of :func:`tinsmith.read`.
 
     Returns
@@ -398,7 +411,8 @@ def read_box(
     """
     (file,) = require_paths([path])
     box = _as_bounds(bounds)
-    with _opened(file, ask(**how), check_crs) as (inner, call):
+    asked = ask(format=format, crs=crs, elevation_unit=elevation_unit, **options)
+    with _opened(file, asked, check_crs) as (inner, call):
         if call.format.read_box is None or inner != file:
             raise ReadError(f"{FILE} has no order in space: its points cannot be read by box.")
         found: PointChunk = call.format.load("read_box")(inner, box, **call.options)
