@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import json
 import shutil
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -484,7 +484,7 @@ class GlobeTiles:
     corners: tuple[Float64Array, Float64Array]
     files: Mapping[TileName, Path]
     is_gzipped: bool
-    index: str = field(default=INDEX)
+    index: str = INDEX
 
     def write(self, folder: Path) -> None:
         """Write the tiles, those without a surface too, and the file that names them."""
