@@ -11,7 +11,6 @@ from contextvars import ContextVar
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
-from .checks import is_collection
 from .errors import LossWarning, OptionError, TinsmithError
 from .sentences import FILE, counted, name_file
 
@@ -147,7 +146,10 @@ def join_alike(notes: Iterable[str]) -> tuple[str, ...]:
 
 def as_notes(notes: Any) -> tuple[str, ...]:
     """Return notes as a tuple of sentences."""
-    texts = tuple(notes) if is_collection(notes) else (None,)
+    try:
+        texts = (None,) if isinstance(notes, str) else tuple(notes)
+    except TypeError:  # nothing to go through
+        texts = (None,)
     if not all(isinstance(text, str) for text in texts):
         raise OptionError("notes", notes, allowed="a sequence of texts")
     return texts
