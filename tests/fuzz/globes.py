@@ -33,7 +33,7 @@ def generate(rng: np.random.Generator) -> Case:
     xy = np.round(xy * size * rng.choice([1.0, 0.1], 2), 3)
     corner = rng.choice([[500_000.0, 4_000_000.0], [500_000.0, 0.0], [250_000.0, 5_000_000.0]])
     z = np.round(rng.normal(0, float(rng.choice([0.01, 1.0, 300.0])), len(xy)), 3)
-    most = int(np.log2(180.0 * 111e3 / size)) + 4  # some 16 tiles across
+    most = min(int(np.log2(180.0 * 111e3 / size)) + 4, 24)  # some 16 tiles across
     return {
         "points": np.column_stack([xy + corner, z]).tolist(),
         "max_level": None if kind < 3 and rng.random() < 0.7 else int(rng.integers(most - 6, most)),

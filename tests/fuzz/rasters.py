@@ -113,7 +113,9 @@ def examine(case: Case) -> str:
     asked = {"grid": as_grid(where)} if "corner" in where else {"spacing": where["spacing"]}
     try:
         raster = ts.rasterize(tin, threads=1, **asked)
-    except ts.PointsError:
+    except ts.PointsError as error:
+        if str(error).startswith("Corners"):
+            return "refused: cells beyond the globe"
         grid = asked["grid"] if "grid" in asked else cover(tin.bounds, where["spacing"])
         assert (tin.locate(list_centers(grid)) < 0).all(), "cells that have a value"
         return "refused: nothing there"

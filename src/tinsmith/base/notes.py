@@ -148,7 +148,7 @@ def as_notes(notes: Any) -> tuple[str, ...]:
     """Return notes as a tuple of sentences."""
     try:
         texts = (None,) if isinstance(notes, str) else tuple(notes)
-    except TypeError:  # nothing to go through
+    except (TypeError, LookupError):  # nothing to go through
         texts = (None,)
     if not all(isinstance(text, str) for text in texts):
         raise OptionError("notes", notes, allowed="a sequence of texts")
