@@ -194,3 +194,21 @@ def test_what_is_refused(lidar, tmp_path):
     with pytest.raises(ts.OptionError, match="left out for 3dtiles"):
         ts.tiles(lidar).write(made, max_level=3, executor=Shuffled())
     assert sorted(one.name for one in tmp_path.iterdir()) == ["points.csv"]
+
+
+def test_points_far_from_the_others_are_no_reason_for_millions_of_tiles(tmp_path):
+    rng = np.random.default_rng(5)
+    near = np.column_stack([rng.random((500, 2)) * 100 + [500_000, 4_000_000], rng.random(500)])
+    far = [[500_000, 5_000_000, 0], [700_000, 4_000_000, 0]]
+    survey = ts.Survey(points=np.vstack([near, far]), crs="EPSG:32616")
+    path = ts.write(survey, tmp_path / "far.csv")
+    words = (
+        r"would have [\d,]+ tiles or more, and the surface has [\d,]+ triangles: leave out points"
+    )
+    with pytest.raises(ts.WriteError, match=words):
+        ts.write(ts.triangulate(survey), tmp_path / "whole", format="quantized-mesh")
+    with pytest.raises(ts.PointsError, match=words):
+        ts.tiles(path, crs="EPSG:32616").write(tmp_path / "made", format="quantized-mesh", tiles=3)
+    assert not (tmp_path / "whole").exists()
+    assert not (tmp_path / "made").exists()
+    ts.write(ts.triangulate(survey), tmp_path / "coarse", format="quantized-mesh", max_level=8)

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from ....base.sentences import counted
 from .grid_tiles import FROM_CORNER
 from .tile import STEPS, Tile, TileName, encode_tile
 
@@ -14,7 +15,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
     from pathlib import Path
 
-    from ....base.arrays import Float64Array, Int64Array
+    from ....base.arrays import AnyArray, Float64Array, Int64Array
 
 MOST_LEVEL = 23
 """A step of its tiles is 0.07 mm."""
@@ -28,6 +29,9 @@ _SHARE_OF_A_TILE = 0.25
 
 _COARSEST_ERROR = 77_067.34
 """Metres: error that Cesium expects of level 0, and half of it of each further one."""
+
+_MANY_TILES = 10_000
+"""Up to which a level may have more tiles than there are triangles."""
 
 _SHARE_OF_ERROR = 0.25
 """Of that error, what simplification may take."""
@@ -74,6 +78,28 @@ def describe_small(level: int) -> str:
     return (
         f"Quantized-mesh tiles cannot be written: on level {level} no triangle is as large as a "
         "step of a tile; choose a finer one."
+    )
+
+
+def measure_area(points: Float64Array, triangles: AnyArray) -> float:
+    """Return the area of triangles in square degrees."""
+    a, b, c = (points[triangles[:, k], :2] for k in range(3))
+    u, v = b - a, c - a
+    return float(np.abs(u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0]).sum() / 2)
+
+
+def describe_many(level: int, area: float, count: int) -> str:
+    """Return the refusal of a level that has more tiles than there are triangles, or nothing.
+
+    ``area`` is that of the surface in square degrees, and ``count`` its number of triangles.
+    """
+    tiles = area / (180.0 / 2**level) ** 2
+    if tiles <= max(count, _MANY_TILES):
+        return ""
+    return (
+        f"Quantized-mesh tiles cannot be written: level {level} would have {tiles:,.0f} tiles or "
+        f"more, and the surface has {counted(count, 'triangle')}: leave out points far from the "
+        "others, or choose a coarser finest level (`max_level`)."
     )
 
 

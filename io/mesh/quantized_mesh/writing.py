@@ -28,12 +28,14 @@ from .layer import (
     choose_first,
     count_edge_levels,
     describe_layer,
+    describe_many,
     describe_small,
     encode_file,
     find_file,
     find_tolerance,
     list_bare,
     list_missing,
+    measure_area,
     write_bare,
 )
 from .levels import simplify
@@ -73,7 +75,8 @@ def write(
     OptionError
         If there is no such level.
     WriteError
-        Also if the folder is of something else, or the surface crosses the antimeridian.
+        Also if the folder is of something else, the surface crosses the antimeridian, or its finest
+        level has too many tiles, as a point far from the others makes.
 
     Warns
     -----
@@ -96,6 +99,9 @@ def write(
     finest = max_level
     if finest is None:
         finest = choose_finest(count_edge_levels(*placed.points[placed.edges].transpose(1, 0, 2)))
+    area = measure_area(placed.points, placed.triangles)
+    if refusal := describe_many(finest, area, len(placed.triangles)):
+        raise WriteError(refusal)
     first = choose_first(low, high, finest)
     available: list[list[TileName]] = []
     with replacing_folder(path, marker="layer.json") as folder:

@@ -35,12 +35,14 @@ from ...io.mesh.quantized_mesh import (
     choose_height_step,
     count_edge_levels,
     describe_layer,
+    describe_many,
     describe_small,
     encode_file,
     find_file,
     find_tolerance,
     list_bare,
     list_missing,
+    measure_area,
     write_bare,
 )
 from ...terrain.parts import are_owned
@@ -128,6 +130,7 @@ def compute(part: Part) -> Made:
     low, high = places.min(axis=0), places.max(axis=0)
     told |= {"low": low.tolist(), "high": high.tolist(), "triangles": len(owned)}
     corners = corners.reshape(-1, 3).astype(np.int32)
+    told["area"] = measure_area(places, corners)
     return len(local.points), told, save_arrays(part, points=places, triangles=corners)
 
 
@@ -197,7 +200,8 @@ def combine(
     Raises
     ------
     PointsError
-        If there is no triangle, also on one of the levels, or the surface crosses the antimeridian.
+        If there is no triangle, also on one of the levels, if the finest level has too many tiles,
+        or the surface crosses the antimeridian.
     """
     filled = [record for record in records.values() if record.files]
     if not filled:
@@ -211,6 +215,9 @@ def combine(
     if finest is None:
         edges = [one.values["edges"] for one in records.values() if "edges" in one.values]
         finest = choose_finest(np.sum(edges, axis=0))
+    area, count = (sum(one.values[name] for one in filled) for name in ("area", "triangles"))
+    if refusal := describe_many(finest, area, count):
+        raise PointsError(refusal)
     levels = _Levels(choose_first(low, high, finest), finest)
     blocks = _list_blocks(run.folder, levels, filled)
     cut = phase.run(run, _CUT, cut_block, blocks, divide=_divide_block)
