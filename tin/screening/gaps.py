@@ -201,7 +201,7 @@ def _describe(
     return (
         f"{_count_triangles(len(chosen))} {where} with edges of up to "
         f"{longest:.6g} {unit}, far longer than the usual {limit.usual:.3g} "
-        f"({share:.2g} % of the area), {what}."
+        f"({share:.{3 if share >= 99.5 else 2}g} % of the area), {what}."
     )
 
 
