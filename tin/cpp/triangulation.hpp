@@ -276,12 +276,11 @@ class Triangulator {
     result_.neighbors.reset();
     grid.drop_cells();
     release_freed_memory();
-    const auto keep_going = [this] { return team_.keeps_going(0); };
-    Insertion insertion(grid);
-    if (!insertion.run(keep_going)) return;
+    Insertion insertion(grid, team_);
+    if (!insertion.run()) return;
     result_.counts.walk_steps = insertion.walk_steps();
     allocate();
-    if (!CanonicalOrder(grid, insertion.mesh()).write(result_.arrays(), keep_going)) return;
+    if (!CanonicalOrder(grid, insertion.mesh(), team_).write(result_.arrays())) return;
     number_by_rows();
   }
 

@@ -8,12 +8,14 @@
 #pragma once
 
 #include <algorithm>
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
 
 #include "../base/arrays.hpp"
 #include "../base/ids.hpp"
+#include "../base/parallel.hpp"
 #include "../growth/triangle_store.hpp"
 #include "../index/grid.hpp"
 #include "../predicates/predicates.hpp"
@@ -24,28 +26,30 @@ namespace tinsmith {
 
 class CanonicalOrder {
  public:
-  // Corners of the mesh are sweep numbers. Both must outlive the order.
-  CanonicalOrder(const PointGrid& grid, const GhostMesh& mesh)
+  // Corners of the mesh are sweep numbers. All must outlive the order.
+  CanonicalOrder(const PointGrid& grid, const GhostMesh& mesh, Team& team)
       : grid_(grid),
+        team_(team),
         triangles_(mesh.triangles.get()),
         count_(mesh.count),
         number_of_(scratch_array<Triangle>(mesh.count)),
         end_of_(grid.count() + std::size_t{1}) {}
 
-  // `out` has room for all triangles but the ghosts. Returns false if `keep_going` did.
-  template <typename KeepGoing>
-  bool write(Triangles out, KeepGoing&& keep_going) {
+  // `out` has room for all triangles but the ghosts. Returns false if the team is stopped.
+  bool write(Triangles out) {
     corners_ = out.corners;
     neighbors_ = out.neighbors;
     const auto triangles = static_cast<std::int64_t>(count_);
-    if (!in_blocks(triangles, keep_going, &CanonicalOrder::count_owned)) return false;
+    const bool is_shared = team_.size() > 1;
+    if (!in_blocks(triangles, is_shared ? &CanonicalOrder::count_owned<true>
+                                        : &CanonicalOrder::count_owned<false>)) {
+      return false;
+    }
     begins_from_counts();
-    return in_blocks(triangles, keep_going, &CanonicalOrder::deal) &&
-           in_blocks(grid_.count(), keep_going, &CanonicalOrder::order_stars) &&
-           in_blocks(triangles, keep_going, &CanonicalOrder::write_neighbors);
-  }
-  void write(Triangles out) {
-    write(out, [] { return true; });
+    return in_blocks(triangles,
+                     is_shared ? &CanonicalOrder::deal<true> : &CanonicalOrder::deal<false>) &&
+           in_blocks(grid_.count(), &CanonicalOrder::order_stars) &&
+           in_blocks(triangles, &CanonicalOrder::write_neighbors);
   }
 
   // After `write`: flags[3 * triangle + corner] = is_set(half-edge of the mesh).
@@ -62,15 +66,27 @@ class CanonicalOrder {
   }
 
  private:
-  template <typename KeepGoing>
-  bool in_blocks(std::int64_t count, KeepGoing&& keep_going,
-                 void (CanonicalOrder::*work)(std::int64_t, std::int64_t)) {
+  bool in_blocks(std::int64_t count, void (CanonicalOrder::*work)(std::int64_t, std::int64_t)) {
     constexpr std::int64_t kBlock = 65536;  // a few milliseconds
-    for (std::int64_t begin = 0; begin < count; begin += kBlock) {
-      if (!keep_going()) return false;
-      (this->*work)(begin, std::min(begin + kBlock, count));
-    }
-    return true;
+    std::atomic<std::int64_t> next{0};
+    team_.run([&](int member) {
+      while (team_.keeps_going(member)) {
+        const std::int64_t begin = next.fetch_add(kBlock);
+        if (begin >= count) return;
+        (this->*work)(begin, std::min(begin + kBlock, count));
+      }
+    });
+    return !team_.is_stopped();
+  }
+
+  // What a count was before one is added. Threads may come to those of one owner at a time.
+  template <bool kIsShared>
+  static std::int32_t add_one(std::atomic<std::int32_t>& count) {
+    constexpr auto kRelaxed = std::memory_order_relaxed;
+    if (kIsShared) return count.fetch_add(1, kRelaxed);
+    const std::int32_t before = count.load(kRelaxed);
+    count.store(before + 1, kRelaxed);
+    return before;
   }
 
   // Corner of the first vertex of the sweep, or of the ghost.
@@ -81,10 +97,11 @@ class CanonicalOrder {
   }
 
   // One entry on from its owner, so that the ghost's are counted in front.
+  template <bool kIsShared>
   void count_owned(std::int64_t begin, std::int64_t end) {
     for (std::int64_t t = begin; t < end; ++t) {
       const auto& corner = triangles_[t].corner;
-      ++end_of_[number(std::min({corner[0], corner[1], corner[2]})) + 1];
+      add_one<kIsShared>(end_of_[number(std::min({corner[0], corner[1], corner[2]})) + 1]);
     }
   }
 
@@ -92,13 +109,14 @@ class CanonicalOrder {
   void begins_from_counts() {
     end_of_[0] = 0;
     std::int32_t total = 0;
-    for (std::int32_t& end : end_of_) {
+    for (std::atomic<std::int32_t>& end : end_of_) {
       const std::int32_t size = end;
       end = total;
       total += size;
     }
   }
 
+  template <bool kIsShared>
   void deal(std::int64_t begin, std::int64_t end) {
     for (std::int64_t t = begin; t < end; ++t) {
       const GhostTriangle& triangle = triangles_[t];
@@ -108,7 +126,7 @@ class CanonicalOrder {
         number_of_[t] = kNoTriangle;
         continue;
       }
-      const std::int32_t at = end_of_[number(owner) + 1]++;
+      const std::int32_t at = add_one<kIsShared>(end_of_[number(owner) + 1]);
       std::int32_t* const corner = corners_ + std::int64_t{3} * at;
       corner[0] = number(owner);
       corner[1] = number(triangle.corner[corner_after(first)]);
@@ -118,6 +136,7 @@ class CanonicalOrder {
   }
 
   void order_stars(std::int64_t first, std::int64_t end) {
+    StarOrder star;
     std::int32_t begin = end_of_[first];  // the end of the vertex before
     for (std::int64_t v = first; v < end; ++v) {
       const std::int32_t after = end_of_[v + 1];
@@ -127,7 +146,7 @@ class CanonicalOrder {
       } else if (owned == 2) {
         order_two(begin);
       } else if (owned > 2) {
-        order_star(static_cast<Vertex>(v), begin, after);
+        order_star(static_cast<Vertex>(v), begin, after, star);
       }
       begin = after;
     }
@@ -147,16 +166,16 @@ class CanonicalOrder {
     number_of_[neighbors_[begin + 1]] = triangle_numbered(begin + !is_swapped);
   }
 
-  void order_star(Vertex v, std::int32_t begin, std::int32_t end) {
-    star_.clear();
+  void order_star(Vertex v, std::int32_t begin, std::int32_t end, StarOrder& star) {
+    star.clear();
     for (std::int32_t i = begin; i < end; ++i) {
       const std::int32_t* const corner = corners_ + std::int64_t{3} * i;
-      star_.add({Vertex{corner[1]}, Vertex{corner[2]}, neighbors_[i]});
+      star.add({Vertex{corner[1]}, Vertex{corner[2]}, neighbors_[i]});
     }
-    star_.put_in_order([this, v](Vertex a, Vertex b) {
+    star.put_in_order([this, v](Vertex a, Vertex b) {
       return compare_distances(grid_.point(v), grid_.point(a), grid_.point(b));
     });
-    for (const StarOrder::Ray& ray : star_) {
+    for (const StarOrder::Ray& ray : star) {
       std::int32_t* const corner = corners_ + std::int64_t{3} * begin;
       corner[1] = number(ray.from);
       corner[2] = number(ray.to);
@@ -181,13 +200,14 @@ class CanonicalOrder {
   }
 
   const PointGrid& grid_;
+  Team& team_;
   const GhostTriangle* triangles_;
   std::uint32_t count_;
   ScratchArray<Triangle> number_of_;  // of each triangle of the mesh; kNoTriangle of ghosts
-  std::vector<std::int32_t> end_of_;  // of each owner's triangles, the ghost's in front
+  std::vector<std::atomic<std::int32_t>>
+      end_of_;  // of each owner's triangles, the ghost's in front
   std::int32_t* corners_ = nullptr;
   std::int32_t* neighbors_ = nullptr;
-  StarOrder star_;
 };
 
 }  // namespace tinsmith

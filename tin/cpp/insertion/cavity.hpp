@@ -30,9 +30,10 @@ namespace tinsmith {
 class Cavity {
  public:
   // `points` by vertex; the ghost's coordinates are not numbers, so that no test with it is
-  // certain in floating point and all come to the exact one.
-  Cavity(GhostMesh& mesh, const Point* points)
-      : triangles_(mesh.triangles.get()), mesh_(mesh), points_(points) {
+  // certain in floating point and all come to the exact one. New triangles are numbered from
+  // `unused` on.
+  Cavity(GhostTriangle* triangles, Triangle unused, const Point* points)
+      : triangles_(triangles), unused_(number(unused)), points_(points) {
     reserve(kUsualRoom);
   }
 
@@ -180,8 +181,8 @@ class Cavity {
   }
 
   Triangle fill(Vertex vertex) {
-    removed_[removed_count_] = Triangle{mesh_.count++};
-    removed_[removed_count_ + 1] = Triangle{mesh_.count++};
+    removed_[removed_count_] = Triangle{unused_++};
+    removed_[removed_count_ + 1] = Triangle{unused_++};
     const Triangle* const fan = removed_.data();
     const BoundaryEdge* const boundary = boundary_.data();
     Spokes* const spokes = spokes_.data();
@@ -207,7 +208,7 @@ class Cavity {
   }
 
   GhostTriangle* triangles_;
-  GhostMesh& mesh_;
+  std::uint32_t unused_;
   const Point* points_;
   Point p_{};
   std::uint32_t room_ = 0;

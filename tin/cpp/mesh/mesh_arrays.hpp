@@ -120,7 +120,7 @@ class MeshArrays {
     corners = streamed_array<std::int32_t>(3 * std::size_t{triangle_count});
     neighbors = streamed_array<std::int32_t>(3 * std::size_t{triangle_count});
     fixed = streamed_array<bool>(3 * std::size_t{triangle_count});
-    CanonicalOrder order(grid, copy);
+    CanonicalOrder order(grid, copy, team);
     order.write(Triangles{corners.get(), neighbors.get()});
     order.write_flags(fixed.get(), [this](HalfEdge e) {
       if (slot_of_.empty()) return mesh_.is_fixed(e);
