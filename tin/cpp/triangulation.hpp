@@ -81,10 +81,20 @@ class Triangulator {
     result_.kept_row = grid.kept_row();
     result_.distinct_count = grid.count();
     if (grid.count() < 3) return;
+    rows_of_ = grid.rows();
+    if (options_.keeps_sweep) keep_sweep(grid);
+    if (!is_worth_growing(grid)) {
+      if (!is_flat(grid)) insert_all(grid);
+      return;
+    }
     std::vector<Vertex> hull = HullFinder(grid, team_).find();
     if (hull.empty() || !team_.keeps_going(0)) return;
     result_.triangle_count = triangle_count(grid.count(), static_cast<std::int64_t>(hull.size()));
-    build(grid, std::move(hull));
+    const bool is_grown = with_path(
+        options_.path, [&](auto tag) { return grow<typename decltype(tag)::Type>(grid, hull); });
+    if (is_grown || team_.is_stopped()) return;
+    hull = {};
+    insert_all(grid);
   }
 
   // ------------------------------------------------------------- lattices
@@ -162,23 +172,21 @@ class Triangulator {
 
   // ------------------------------------------------------------- all other points
 
-  // With more of the points on the hull they lie on one curve, where every search sees them all.
-  static constexpr std::int32_t kMostOnHull = 4;  // one point in four
   static constexpr std::int32_t kLeastToInsert = 1000;
 
-  // Growth, or insertion where its searches cost too much.
-  void build(PointGrid& grid, std::vector<Vertex> hull) {
-    rows_of_ = grid.rows();
-    if (options_.keeps_sweep) keep_sweep(grid);
-    const bool is_curve = static_cast<std::int32_t>(hull.size()) > grid.count() / kMostOnHull &&
-                          grid.count() > kLeastToInsert;
-    const bool is_worth_growing = options_.method == Method::kGrowth || (may_insert() && !is_curve);
-    const bool is_grown = is_worth_growing && with_path(options_.path, [&](auto tag) {
-                            return grow<typename decltype(tag)::Type>(grid, hull);
-                          });
-    if (is_grown || team_.is_stopped()) return;
-    hull = {};
-    insert_all(grid);
+  // Whether growth is asked for, or may cost less than insertion.
+  bool is_worth_growing(const PointGrid& grid) const {
+    if (!may_insert()) return options_.method == Method::kGrowth;
+    return grid.count() <= kLeastToInsert || !HullFinder::is_of_curve(grid);
+  }
+
+  // Whether all points are in line.
+  static bool is_flat(const PointGrid& grid) {
+    const Point first = grid.point(Vertex{0}), last = grid.point(Vertex{grid.count() - 1});
+    for (const Vertex v : Ids<Vertex>(grid.count())) {
+      if (orientation(first, last, grid.point(v)) != 0) return false;
+    }
+    return true;
   }
 
   bool may_insert() const {
@@ -279,6 +287,7 @@ class Triangulator {
     Insertion insertion(grid, team_);
     if (!insertion.run()) return;
     result_.counts.walk_steps = insertion.walk_steps();
+    result_.triangle_count = triangle_count(grid.count(), insertion.hull_size());
     allocate();
     if (!CanonicalOrder(grid, insertion.mesh(), team_).write(result_.arrays())) return;
     number_by_rows();

@@ -8,6 +8,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "../base/ids.hpp"
@@ -26,12 +28,30 @@ class HullFinder {
   std::vector<Vertex> find() {
     find_extremes();
     collect_candidates();
-    std::sort(candidates_.begin(), candidates_.end(), [this](Vertex a, Vertex b) {
-      return lexicographically_before(grid_.point(a), grid_.point(b));
+    return hull_of(grid_, std::move(candidates_));
+  }
+
+  // Whether the points seem to lie on one convex curve, where every search sees them all: of an even
+  // sample more than a quarter is on its hull.
+  static bool is_of_curve(const PointGrid& grid) {
+    const std::int32_t size = std::min(grid.count(), kSample);
+    std::vector<Vertex> sample;
+    for (std::int32_t i = 0; i < size; ++i) {
+      sample.push_back(Vertex{part_of(grid.count(), i, size).begin});
+    }
+    return hull_of(grid, std::move(sample)).size() > static_cast<std::size_t>(size / 4);
+  }
+
+ private:
+  static constexpr std::int32_t kSample = 1024;
+
+  static std::vector<Vertex> hull_of(const PointGrid& grid, std::vector<Vertex> points) {
+    std::sort(points.begin(), points.end(), [&](Vertex a, Vertex b) {
+      return lexicographically_before(grid.point(a), grid.point(b));
     });
-    const std::vector<Vertex> lower = chain(candidates_);
-    std::reverse(candidates_.begin(), candidates_.end());
-    const std::vector<Vertex> upper = chain(candidates_);
+    const std::vector<Vertex> lower = chain(grid, points);
+    std::reverse(points.begin(), points.end());
+    const std::vector<Vertex> upper = chain(grid, points);
     const bool is_flat = upper.size() < 2 || lower[1] == upper[upper.size() - 2];
     if (is_flat) return {};
     std::vector<Vertex> hull(lower.begin(), lower.end() - 1);
@@ -39,7 +59,6 @@ class HullFinder {
     return hull;
   }
 
- private:
   // Extreme points counter-clockwise from the west: W, SW, S, SE, E, NE, N, NW.
   struct Extremes {
     std::array<double, 8> reach;
@@ -113,11 +132,11 @@ class HullFinder {
   }
 
   // Andrew's monotone chain: pop only at right turns, so that collinear points stay.
-  std::vector<Vertex> chain(const std::vector<Vertex>& sorted) const {
+  static std::vector<Vertex> chain(const PointGrid& grid, const std::vector<Vertex>& sorted) {
     std::vector<Vertex> kept;
     for (Vertex v : sorted) {
-      while (kept.size() >= 2 && orientation(grid_.point(kept[kept.size() - 2]),
-                                             grid_.point(kept.back()), grid_.point(v)) < 0) {
+      while (kept.size() >= 2 && orientation(grid.point(kept[kept.size() - 2]),
+                                             grid.point(kept.back()), grid.point(v)) < 0) {
         kept.pop_back();
       }
       kept.push_back(v);

@@ -73,6 +73,9 @@ struct Level {
   }
 };
 
+// On average, where a level is fitted to points.
+constexpr double kPointsPerCell = 2.0;
+
 class PointGrid {
  public:
   PointGrid(const PointRows& rows, Team& team);
@@ -156,6 +159,7 @@ class PointGrid {
     std::int32_t level;
   };
   friend class GridBuilder;
+  friend class NestedLevels;
 
   template <typename Region, typename Visit>
   std::int64_t visit_level(const Level& level, std::int32_t first_row, std::int32_t last_row,

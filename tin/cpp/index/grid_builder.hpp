@@ -7,18 +7,18 @@
 #pragma once
 
 #include <algorithm>
+#include <atomic>
 #include <cstdint>
-#include <utility>
 #include <vector>
 
 #include "../base/parallel.hpp"
 #include "grid.hpp"
+#include "nested_levels.hpp"
 
 namespace tinsmith {
 
 class GridBuilder {
  public:
-  static constexpr double kPointsPerCell = 2.0;
   // A cell with more points than this gets a grid of its own: hardly any where points are even
   // (about 3 share the cell of a point), every fuller one where they are not.
   static constexpr std::int32_t kCrowdedIfEven = 16;
@@ -49,17 +49,14 @@ class GridBuilder {
   }
 
  private:
-  // Cells up to here are sorted by insertion.
-  static constexpr std::int32_t kShort = 32;
-  // Each level divides its box by the number of its points; what is crowded still is at points
-  // closer together than any survey's, and is searched as one cell.
-  static constexpr int kDeepest = 12;
   // Rows between two questions whether to go on.
   static constexpr std::int32_t kPerQuestion = 1 << 20;
   // A band of so many points fits the second-level cache, in so many bands a page each of memory
   // stays at hand.
   static constexpr std::int64_t kPointsPerBand = 4096;
   static constexpr std::int64_t kMostBands = 1024;
+  // Cells of the top level that a thread takes at a time.
+  static constexpr std::int32_t kCellsPerBlock = 256;
 
   struct Entry {
     Point p;
@@ -71,7 +68,7 @@ class GridBuilder {
   struct alignas(kCacheLine) Part {
     Box box;
     std::vector<std::int32_t> band_end;    // while filling: where its next entry of a band goes
-    std::vector<std::int32_t> full_cells;  // with more points than kCrowdedIfUneven, ascending
+    std::vector<std::int32_t> full_cells;  // with more points than kCrowdedIfUneven
     double squares = 0.0;                  // of the numbers of points in its cells, summed up
   };
 
@@ -108,9 +105,9 @@ class GridBuilder {
     const std::vector<std::int32_t> begins = begins_of_bands();
     team_.run([this](int part) { fill_bands(part); });
     if (team_.is_stopped()) return false;
+    std::atomic<std::int32_t> next{0};
     team_.run([&](int part) {
-      const Range own = part_of(bands_, part, team_.size());
-      for (std::int32_t band = own.begin; band < own.end; ++band) {
+      for (std::int32_t band = next++; band < bands_; band = next++) {
         if (!team_.keeps_going(part)) return;
         sort_band(band, {begins[band], begins[band + 1]}, parts_[part]);
       }
@@ -162,6 +159,7 @@ class GridBuilder {
     const std::int64_t last =
         std::min(first + (std::int64_t{1} << band_shift_), grid_.levels_.front().cell_count());
     std::int32_t* start = grid_.start_.data();
+    const StoredPoints points = stored();
     for (std::int32_t i = held.begin; i < held.end; ++i) ++start[entries_[i].cell];
     std::int32_t total = held.begin;
     for (std::int64_t cell = first; cell < last; ++cell) {
@@ -170,7 +168,7 @@ class GridBuilder {
       start[cell] = total;
     }
     for (std::int32_t i = held.end; i-- > held.begin;) {
-      store(--start[entries_[i].cell], entries_[i]);
+      points.store(--start[entries_[i].cell], {entries_[i].p, entries_[i].row});
     }
     for (std::int64_t cell = first; cell < last; ++cell) {
       const std::int32_t begin = start[cell];
@@ -178,130 +176,49 @@ class GridBuilder {
       if (end - begin > kCrowdedIfUneven) {
         part.full_cells.push_back(static_cast<std::int32_t>(cell));
       } else {
-        sort_cell(begin, end);
+        points.sort_cell(begin, end);
       }
     }
   }
 
-  void store(std::int32_t position, const Entry& entry) {
-    grid_.x_[position] = entry.p.x;
-    grid_.y_[position] = entry.p.y;
-    grid_.rows_[position] = entry.row;
-  }
-  Entry entry(std::int32_t position) const {
-    return {{grid_.x_[position], grid_.y_[position]}, grid_.rows_[position], 0};
-  }
+  StoredPoints stored() const { return {grid_.x_.get(), grid_.y_.get(), grid_.rows_.get()}; }
 
   // ------------------------------------------------------------- nested levels
 
   bool nest_top() {
     double squares = 0.0;
-    for (const Part& part : parts_) squares += part.squares;
-    crowded_ = crowd(squares, rows_.count);
-    std::vector<std::int64_t> cells;
+    std::vector<std::int32_t> cells;
     for (const Part& part : parts_) {
+      squares += part.squares;
       cells.insert(cells.end(), part.full_cells.begin(), part.full_cells.end());
     }
-    nest(0, 0, cells);
-    return !team_.is_stopped();
-  }
-
-  void nest_all(std::int32_t index, int depth) {
-    std::vector<std::int64_t> cells(grid_.levels_[index].cell_count());
-    for (std::size_t cell = 0; cell < cells.size(); ++cell) {
-      cells[cell] = static_cast<std::int64_t>(cell);
-    }
-    nest(index, depth, cells);
-  }
-
-  bool keeps_nesting() {
-    return ++nested_ % kPerQuestion == 0 ? team_.keeps_going(0) : !team_.is_stopped();
-  }
-
-  // Sort the given cells of a level, but give the crowded ones a level each.
-  void nest(std::int32_t index, int depth, const std::vector<std::int64_t>& cells) {
-    const Level level = grid_.levels_[index];
-    std::vector<std::pair<std::int64_t, std::int32_t>> inner;  // cell, level
-    for (const std::int64_t cell : cells) {
-      if (!keeps_nesting()) return;
-      const std::int32_t begin = grid_.start_[level.first_start + cell];
-      const std::int32_t end = grid_.start_[level.first_start + cell + 1];
-      if (end - begin > crowded_ && depth < kDeepest && spread(begin, end)) {
-        inner.emplace_back(cell, static_cast<std::int32_t>(grid_.levels_.size()) - 1);
-      } else {
-        sort_cell(begin, end);
+    std::sort(cells.begin(), cells.end());
+    const auto count = static_cast<std::int32_t>(cells.size());
+    const std::int32_t block_count = (count + kCellsPerBlock - 1) / kCellsPerBlock;
+    std::vector<NestedLevels> blocks(block_count,
+                                     NestedLevels(stored(), crowd(squares, rows_.count)));
+    std::atomic<std::int32_t> next{0};
+    team_.run([&](int member) {
+      for (std::int32_t block = next++; block < block_count; block = next++) {
+        const Range own = part_of(count, block, block_count);
+        const auto keep_going = [&] { return team_.keeps_going(member); };
+        if (!blocks[block].nest_top(grid_.start_.data(), own, cells, keep_going)) return;
       }
-    }
-    if (inner.empty()) return;
-    list_children(index, inner);
-    for (const auto& [cell, child] : inner) nest_all(child, depth + 1);
-  }
-
-  // Put the points of a cell into a level of their own; false if they are all at one point.
-  bool spread(std::int32_t begin, std::int32_t end) {
-    const std::vector<Entry> entries = copy(begin, end);
-    Box box;
-    for (const Entry& e : entries) box.include(e.p);
-    if (box.west == box.east && box.south == box.north) return false;
-    Level level = Level::fitted(box, begin, end, kPointsPerCell);
-    auto& start = grid_.start_;
-    level.first_start = static_cast<std::int64_t>(start.size());
-    start.resize(start.size() + level.cell_count() + 1, 0);
-    std::int32_t* first = start.data() + level.first_start;
-    for (const Entry& e : entries) ++first[level.cell_at(e.p)];
-    std::int32_t total = begin;
-    for (std::int64_t cell = 0; cell <= level.cell_count(); ++cell) {
-      total += first[cell];
-      first[cell] = total;
-    }
-    for (std::size_t i = entries.size(); i-- > 0;) {
-      store(--first[level.cell_at(entries[i].p)], entries[i]);
-    }
-    grid_.levels_.push_back(level);
+    });
+    if (team_.is_stopped()) return false;
+    append(blocks);
     return true;
   }
 
-  std::vector<Entry> copy(std::int32_t begin, std::int32_t end) const {
-    std::vector<Entry> entries;
-    entries.reserve(end - begin);
-    for (std::int32_t i = begin; i < end; ++i) entries.push_back(entry(i));
-    return entries;
-  }
-
-  void list_children(std::int32_t index,
-                     const std::vector<std::pair<std::int64_t, std::int32_t>>& inner) {
-    Level& level = grid_.levels_[index];
-    level.first_child_row = static_cast<std::int64_t>(grid_.child_row_.size());
-    std::size_t next = 0;
-    for (std::int32_t row = 0; row < level.rows; ++row) {
-      grid_.child_row_.push_back(static_cast<std::int64_t>(grid_.children_.size()));
-      for (; next < inner.size() && inner[next].first / level.columns == row; ++next) {
-        const auto column = static_cast<std::int32_t>(inner[next].first % level.columns);
-        grid_.children_.push_back({column, inner[next].second});
-      }
+  void append(const std::vector<NestedLevels>& blocks) {
+    std::vector<NestedLevels::Inner> inner;
+    for (const NestedLevels& block : blocks) {
+      const std::int32_t first = block.append_to(grid_);
+      for (const auto& [cell, level] : block.top()) inner.push_back({cell, first + level});
     }
-    grid_.child_row_.push_back(static_cast<std::int64_t>(grid_.children_.size()));
-  }
-
-  // Insertion sort for the usual cell; stable, so rows at one point stay in the caller's order.
-  void sort_cell(std::int32_t begin, std::int32_t end) {
-    if (end - begin > kShort) return sort_long_cell(begin, end);
-    for (std::int32_t i = begin + 1; i < end; ++i) {
-      const Entry moving = entry(i);
-      std::int32_t j = i;
-      for (; j > begin && lexicographically_before(moving.p, entry(j - 1).p); --j) {
-        store(j, entry(j - 1));
-      }
-      if (j < i) store(j, moving);
-    }
-  }
-
-  void sort_long_cell(std::int32_t begin, std::int32_t end) {
-    std::vector<Entry> entries = copy(begin, end);
-    std::stable_sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) {
-      return lexicographically_before(a.p, b.p);
-    });
-    for (std::int32_t i = begin; i < end; ++i) store(i, entries[i - begin]);
+    if (inner.empty()) return;
+    Level& top = grid_.levels_.front();
+    NestedLevels::list_children(top, inner, grid_.child_row_, grid_.children_);
   }
 
   // Which level the positions belong to, where that changes along the order.
@@ -342,11 +259,12 @@ class GridBuilder {
     grid_.kept_row_.resize(n);
     std::vector<std::int32_t> position(n + 1);  // of the kept point at or after an old position
     std::int32_t kept = 0;
+    const StoredPoints points = stored();
     for (std::int32_t i = 0; i < n; ++i) {
       // Compared with the last kept: places below i may be overwritten already.
       const bool is_repeated = i > 0 && repeats(i, kept - 1);
       position[i] = kept;
-      if (!is_repeated) store(kept++, entry(i));
+      if (!is_repeated) points.store(kept++, points.entry(i));
       grid_.kept_row_[number(grid_.rows_[i])] = number(grid_.rows_[kept - 1]);
     }
     position[n] = kept;
@@ -380,8 +298,6 @@ class GridBuilder {
   StreamedArray<Entry> entries_;  // by band
   int band_shift_ = 0;            // cell >> band_shift_ is the band
   std::int32_t bands_ = 1;
-  std::int32_t crowded_ = kCrowdedIfEven;
-  std::int32_t nested_ = 0;  // cells looked at
 };
 
 // Rows at the point of another must not show in the order of the sweep: where there are any, the

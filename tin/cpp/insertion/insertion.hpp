@@ -8,6 +8,7 @@
 // triangulate each by itself before they are merged.
 #pragma once
 
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -41,6 +42,9 @@ class Insertion {
   }
 
   const GhostMesh& mesh() const { return mesh_; }
+
+  // Vertices on the hull, which are as many as ghost triangles.
+  std::int64_t hull_size() const { return hull_size_; }
 
   // Triangles that were walked through to find where points go.
   std::int64_t walk_steps() const { return walk_steps_; }
@@ -96,12 +100,19 @@ class Insertion {
 
   void number_by_sweep() {
     order_.points.release();
-    team_.run([this](int member) {
+    std::atomic<std::int64_t> ghosts{0};
+    team_.run([&](int member) {
       const Range own = part_of(mesh_.count, member, team_.size());
+      std::int64_t found = 0;
       for (std::int32_t t = own.begin; t < own.end; ++t) {
-        for (Vertex& corner : mesh_.triangles[t].corner) corner = order_.sweep_of[corner];
+        for (Vertex& corner : mesh_.triangles[t].corner) {
+          found += corner == kGhost;
+          corner = order_.sweep_of[corner];
+        }
       }
+      ghosts += found;
     });
+    hull_size_ = ghosts;
     order_.sweep_of.release();
   }
 
@@ -110,6 +121,7 @@ class Insertion {
   CurveOrder order_;
   GhostMesh mesh_;
   std::vector<Ends> ends_;
+  std::int64_t hull_size_ = 0;
   std::int64_t walk_steps_ = 0;
 };
 

@@ -208,8 +208,7 @@ class Lattice {
 
   // The order of the sweep, as the grid of points has it. False if the grid would nest cells.
   bool order_rows(std::int64_t count) {
-    const Level level =
-        Level::fitted(box_, 0, static_cast<std::int32_t>(count), GridBuilder::kPointsPerCell);
+    const Level level = Level::fitted(box_, 0, static_cast<std::int32_t>(count), kPointsPerCell);
     stripes_ = ranges_of(rows_, [&](std::int32_t row) { return level.row_at(y_[row]); });
     const std::vector<Range> across =
         ranges_of(columns_, [&](std::int32_t column) { return level.column_at(x_[column]); });
