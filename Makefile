@@ -155,7 +155,7 @@ mutants: $(READY) ## Change the code at random and list what the tests miss: MUT
 format: $(READY) ## Format the code
 	$(BIN)/ruff format .
 	$(BIN)/ruff check --fix .
-	$(BIN)/clang-format -i $$(git ls-files "t*/cpp/*.hpp" "t*/cpp/*.inc" "t*/cpp/*.cpp" "tests/cpp/*.cpp" "benchmarks/cgal/*.cpp" "benchmarks/cgal/*.hpp")
+	$(BIN)/clang-format -i $$(git ls-files "t*/cpp/*.hpp" "t*/cpp/*.inc" "t*/cpp/*.cpp" "tests/cpp/*.cpp" "benchmarks/compiled/*.cpp" "benchmarks/compiled/*.hpp")
 
 clean: ## Remove what was built
 	rm -rf $(VENV) build demo

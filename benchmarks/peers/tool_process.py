@@ -14,9 +14,9 @@ import numpy as np
 
 from tinsmith.base.arrays import AnyArray
 
-from ..cgal import build_harness
+from ..compiled import build_harness
 from ..datasets.tasks import write_task
-from .triangulators import is_cgal
+from .triangulators import DELAUNAY32, DELAUNAY32_ALL_CORES, is_compiled, name_harness
 
 __all__ = ["ToolFailedError", "ToolProcess", "make_task_command", "make_worker_command"]
 
@@ -49,7 +49,7 @@ class ToolProcess:
     Parameters
     ----------
     name : str
-        ``CGAL`` or a key of ``TOOLS``.
+        A compiled tool or a key of ``TOOLS``.
     task : (n, 3) float64 array
         Points; in subclasses what their tools work on.
     folder : Path
@@ -64,7 +64,7 @@ class ToolProcess:
         self.seconds: list[float] = []
         self.growth: int | None = None
         self.output_bytes = 0
-        self._is_cgal = is_cgal(name)
+        self._is_compiled = is_compiled(name)
         self._folder = folder
         self._limit = limit
         self._count = 1
@@ -76,11 +76,12 @@ class ToolProcess:
 
     def command(self, name: str, task: Any, folder: Path) -> list[str]:
         """Write the task for the tool, unless another one's process has; return what runs it."""
-        if is_cgal(name):
+        if is_compiled(name):
             plane = folder / "points.bin"
             if not plane.exists():
                 task[:, :2].tofile(plane)
-            return [str(build_harness()), str(plane)]
+            threads = {DELAUNAY32: ["1"], DELAUNAY32_ALL_CORES: ["0"]}.get(name, [])
+            return [str(build_harness(name_harness(name, "points"))), str(plane), *threads]
         table = folder / "points.npy"
         if not table.exists():
             np.save(table, task)
@@ -114,11 +115,11 @@ class ToolProcess:
 
     def triangles(self) -> AnyArray:
         """Return the last answer: (m, 3) vertex numbers or (m, 3, 2) coordinates."""
-        path = self._folder / ("answer.bin" if self._is_cgal else "answer.npy")
+        path = self._folder / ("answer.bin" if self._is_compiled else "answer.npy")
         self._ask(f"save {path}", START_SECONDS)
-        made: AnyArray = np.fromfile(path) if self._is_cgal else np.load(path)
+        made: AnyArray = np.fromfile(path) if self._is_compiled else np.load(path)
         path.unlink()
-        return made.reshape(-1, 3, 2) if self._is_cgal else made
+        return made.reshape(-1, 3, 2) if self._is_compiled else made
 
     def _timed(self) -> float:
         answer = self._ask(f"run {self._count}", self._limit)

@@ -6,7 +6,7 @@ answer: an advantage for the peers, since tinsmith's call is timed whole.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import partial
 from typing import Any
@@ -18,16 +18,22 @@ from tinsmith.base.arrays import AnyArray, Float64Array
 __all__ = [
     "ALL_CORES",
     "CGAL",
+    "DELAUNAY32",
+    "DELAUNAY32_ALL_CORES",
     "KERNEL",
     "KERNEL_ALL_CORES",
     "TOOLS",
     "Tool",
     "count_tin_bytes",
-    "is_cgal",
+    "is_compiled",
+    "is_exact",
+    "name_harness",
 ]
 
 
 CGAL = "CGAL"
+DELAUNAY32 = "Delaunay32"
+DELAUNAY32_ALL_CORES = "Delaunay32, all cores"
 KERNEL = "tinsmith kernel"
 ALL_CORES = "tinsmith, all cores"
 KERNEL_ALL_CORES = "kernel, all cores"
@@ -67,9 +73,19 @@ class Tool:
     is_exact: bool = False
 
 
-def is_cgal(tool: str) -> bool:
-    """Whether a tool is a way of using CGAL, which has harnesses of its own."""
-    return tool.startswith(CGAL)
+def is_compiled(tool: str) -> bool:
+    """Whether a tool is a way of using a library in C++, which has a harness of its own."""
+    return tool.startswith((CGAL, DELAUNAY32))
+
+
+def name_harness(tool: str, work: str) -> str:
+    """Return the name of a compiled tool's harness for ``"points"``, ``"lines"`` or ``"edits"``."""
+    return f"{'cgal' if tool.startswith(CGAL) else 'delaunay32'}_{work}"
+
+
+def is_exact(tool: str, modules: Mapping[str, Tool]) -> bool:
+    """Whether a tool claims to be right for any coordinates; Delaunay32's are rounded."""
+    return tool.startswith(CGAL) if is_compiled(tool) else modules[tool].is_exact
 
 
 def _pass_points(points: Float64Array) -> Float64Array:
@@ -200,4 +216,4 @@ TOOLS: dict[str, Tool] = {
         triangles=_read_geos_triangles,
     ),
 }
-"""The tools that Python can call, by name; CGAL has a harness of its own."""
+"""The tools that Python can call, by name; CGAL and Delaunay32 have harnesses of their own."""

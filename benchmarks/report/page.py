@@ -14,7 +14,13 @@ from typing import Any
 from ..measure import OURS, Outcome, Result, is_installed
 from ..peers.answers import AS_MANY, EQUAL
 from ..peers.line_tools import ALL_LINE_TOOLS
-from ..peers.triangulators import CGAL, KERNEL
+from ..peers.triangulators import (
+    CGAL,
+    DELAUNAY32,
+    DELAUNAY32_ALL_CORES,
+    KERNEL,
+    KERNEL_ALL_CORES,
+)
 from ..sections import answers, kernel
 from .goals import judge_goals
 from .tables import format_table
@@ -44,18 +50,19 @@ HOW_TO_REPEAT = """\
 {command}
 ```
 
-CGAL is a C++ library: with `g++` and its headers (Debian: `libcgal-dev`) the command compiles a
-small program. Tools that are not installed are skipped and named. Data sets are made by seeded
-generators in `benchmarks/`.
+CGAL and Delaunay32 are C++ libraries: with `g++` and CGAL's headers (Debian: `libcgal-dev`), and
+the source of Delaunay32 (the command says where), small programs are compiled. Tools that are not
+installed are skipped and named. Data sets are made by seeded generators in `benchmarks/`.
 """
 KERNEL_NOTES = """\
 Seconds, and in brackets the ratio to the whole call `ts.triangulate(points)`: above 1 tinsmith is
 faster. That call checks the input, merges duplicates and makes all arrays of the TIN; *kernel* is
 the compiled part alone, triangles and neighbours. Of the other libraries only the triangulation is
 timed, without the conversion of the points to their types; CGAL (`insert(begin, end)`, exact
-predicates, compiled with `-O3 -march=native`) runs without Python. Points are in the order of the
-data set; startinpy inserts them in that order and is slowest in random order. † wrong, incomplete
-or not finished in time, see below.
+predicates) and Delaunay32, both compiled with `-O3 -march=native`, run without Python. Delaunay32
+is given integers, the coordinates rounded to millimetres, so that its points are others. Points
+are in the order of the data set; startinpy inserts them in that order and is slowest in random
+order. † wrong, incomplete or not finished in time, see below.
 """
 
 
@@ -262,11 +269,16 @@ def format_goals(results: list[Result]) -> list[str]:
     return ["### Required and reached\n", GOALS_NOTES, _format_table(head, lines)]
 
 
+BESIDE = ((CGAL, KERNEL), (DELAUNAY32, KERNEL), (DELAUNAY32_ALL_CORES, KERNEL_ALL_CORES))
+"""A peer, and which of ours is compared with it."""
+
+
 def _format_times(rows: list[_KernelRow], tools: list[str]) -> str:
-    is_beside = {KERNEL, CGAL} <= set(tools)
-    head = ["data set, points", *tools] + ["CGAL / kernel"] * is_beside
+    beside = [(peer, own) for peer, own in BESIDE if {peer, own} <= set(tools)]
+    head = ["data set, points", *tools, *(f"{peer} / {own}" for peer, own in beside)]
     body = [
-        [row.label, *map(row.cell, tools)] + [row.ratio(CGAL, KERNEL)] * is_beside for row in rows
+        [row.label, *map(row.cell, tools), *(row.ratio(peer, own) for peer, own in beside)]
+        for row in rows
     ]
     return _format_table(head, body)
 

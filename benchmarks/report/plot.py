@@ -8,7 +8,14 @@ from typing import Any
 
 from ..measure import OURS, Result
 from ..peers.line_tools import CGAL_INDICES
-from ..peers.triangulators import ALL_CORES, CGAL, KERNEL, KERNEL_ALL_CORES
+from ..peers.triangulators import (
+    ALL_CORES,
+    CGAL,
+    DELAUNAY32,
+    DELAUNAY32_ALL_CORES,
+    KERNEL,
+    KERNEL_ALL_CORES,
+)
 from ..sections import kernel, lines
 
 __all__ = ["TITLES", "draw"]
@@ -31,6 +38,14 @@ STYLES: dict[str, dict[str, Any]] = {
     CGAL: {"color": "#d1495b", "marker": "D", "s": 42, "zorder": 4},
     CGAL_INDICES: {
         "color": "#d1495b",
+        "marker": "D",
+        "s": 30,
+        "zorder": 4,
+        "facecolors": "none",
+    },
+    DELAUNAY32: {"color": "#7b3f9e", "marker": "D", "s": 42, "zorder": 4},
+    DELAUNAY32_ALL_CORES: {
+        "color": "#7b3f9e",
         "marker": "D",
         "s": 30,
         "zorder": 4,

@@ -16,13 +16,13 @@ import numpy as np
 import tinsmith as ts
 from tinsmith.tin import TIN
 
-from ..cgal import build_harness
+from ..compiled import build_harness
 from ..datasets.edits import BATCH, EDIT_TASKS, EditTask, label_task, make_edit_task
 from ..measure import Outcome, Result, find_median
 from ..peers.answers import Verdict, judge_answer, number_corners, rank_triangles
 from ..peers.edit_tools import ALL_EDIT_TOOLS, BUILD, EDIT_TOOLS, OPENED
 from ..peers.tool_process import ToolProcess, make_task_command
-from ..peers.triangulators import CGAL, is_cgal
+from ..peers.triangulators import CGAL, is_compiled, is_exact, name_harness
 from .kernel import find_tools, run_tools
 
 __all__ = ["SECTION", "run"]
@@ -70,12 +70,12 @@ class EditProcess(ToolProcess):
 
     def command(self, name: str, task: EditTask, folder: Path) -> list[str]:
         """Write the task for the tool; return what runs it."""
-        if not is_cgal(name):
+        if not is_compiled(name):
             return make_task_command("edits", name, task, folder)
         plane, script = folder / "points.bin", folder / "script.bin"
         task.points[:, :2].tofile(plane)
         task.script[:, CGAL_COLUMNS].tofile(script)
-        return [str(build_harness("edits")), str(plane), str(script)]
+        return [str(build_harness(name_harness(name, "edits"))), str(plane), str(script)]
 
 
 def _measure_edits(
@@ -103,8 +103,7 @@ def _judge_edits(tool: str, process: ToolProcess, tin: TIN, task: EditTask) -> V
     if found.is_right and answer.shape[2] == 3:
         wrong = np.count_nonzero(wanted.points[numbers, 2] != answer[:, :, 2])
         found = Verdict(False, f"{wrong:,} elevations of corners wrong") if wrong else found
-    is_exact = is_cgal(tool) or EDIT_TOOLS[tool].is_exact
-    assert found.is_right or not is_exact, f"{tool}: {found.text}"
+    assert found.is_right or not is_exact(tool, EDIT_TOOLS), f"{tool}: {found.text}"
     return found
 
 

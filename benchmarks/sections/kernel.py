@@ -19,12 +19,23 @@ import tinsmith as ts
 from tinsmith.base.arrays import Float64Array
 from tinsmith.tin import _kernel
 
-from ..cgal import CgalMissingError, build_harness
+from ..compiled import PeerMissingError, build_harness
 from ..datasets.points import DATASETS, make_points
 from ..measure import OURS, SLOW_SECONDS, Outcome, Result, find_median
 from ..peers.answers import Verdict, judge_answer, make_counting_judge, rank_triangles
 from ..peers.tool_process import ToolFailedError, ToolProcess
-from ..peers.triangulators import ALL_CORES, CGAL, KERNEL, KERNEL_ALL_CORES, TOOLS, is_cgal
+from ..peers.triangulators import (
+    ALL_CORES,
+    CGAL,
+    DELAUNAY32,
+    DELAUNAY32_ALL_CORES,
+    KERNEL,
+    KERNEL_ALL_CORES,
+    TOOLS,
+    is_compiled,
+    is_exact,
+    name_harness,
+)
 
 __all__ = [
     "ALL_TOOLS",
@@ -43,7 +54,8 @@ WORK = "work"
 """Stands as tool in the rows that count work."""
 
 OUR_TOOLS = (OURS, KERNEL, ALL_CORES, KERNEL_ALL_CORES)
-ALL_TOOLS = (*OUR_TOOLS, CGAL, *(name for name in TOOLS if name not in OUR_TOOLS))
+COMPILED_TOOLS = (CGAL, DELAUNAY32, DELAUNAY32_ALL_CORES)
+ALL_TOOLS = (*OUR_TOOLS, *COMPILED_TOOLS, *(name for name in TOOLS if name not in OUR_TOOLS))
 LARGEST_COMPARED = 1_000_000
 """Above this only the numbers of triangles are compared, and ours is checked to level 2."""
 
@@ -77,7 +89,7 @@ def run(
     An AssertionError says that our answer, or that of an exact peer, is wrong.
     """
     outcome = Outcome()
-    present = find_tools(tools, TOOLS, "delaunay", outcome)
+    present = find_tools(tools, TOOLS, "points", outcome)
     for name, n in cases:
         print(f"kernel: {name}, {n:,} points", file=sys.stderr, flush=True)
         outcome.results += _measure_case(Case(name, n), present, repeats, limit)
@@ -85,16 +97,16 @@ def run(
 
 
 def find_tools(
-    tools: Sequence[str], modules: Mapping[str, Any], program: str, outcome: Outcome
+    tools: Sequence[str], modules: Mapping[str, Any], work: str, outcome: Outcome
 ) -> list[str]:
-    """Return the tools that are here, CGAL by one of its programs; note the others."""
-    here = outcome.present({tool: modules[tool].module for tool in tools if not is_cgal(tool)})
-    if any(map(is_cgal, tools)):
+    """Return the tools that are here, compiled ones by their harness for some work; note others."""
+    here = outcome.present({tool: modules[tool].module for tool in tools if not is_compiled(tool)})
+    for tool in filter(is_compiled, tools):
         try:
-            build_harness(program)
-            here += filter(is_cgal, tools)
-        except CgalMissingError as error:
-            outcome.skip({tool: str(error) for tool in filter(is_cgal, tools)})
+            build_harness(name_harness(tool, work))
+            here.append(tool)
+        except PeerMissingError as error:
+            outcome.skip({tool: str(error)})
     return [tool for tool in tools if tool in here]
 
 
@@ -186,8 +198,7 @@ def _judge_all(
 
 
 def _accept(tool: str, found: Verdict) -> Verdict:
-    is_exact = tool == CGAL or TOOLS[tool].is_exact
-    assert found.is_right or not is_exact, f"{tool}: {found.text}"
+    assert found.is_right or not is_exact(tool, TOOLS), f"{tool}: {found.text}"
     return found
 
 

@@ -17,13 +17,13 @@ import tinsmith as ts
 from tinsmith.base.arrays import Int64Array
 from tinsmith.tin import TIN
 
-from ..cgal import build_harness
+from ..compiled import build_harness
 from ..datasets.lines import LEAST_POINTS, LINE_DATASETS, LineTask, make_lines
 from ..measure import Outcome, Result
 from ..peers.answers import Verdict, encode_edges, judge_answer, number_corners, rank_triangles
 from ..peers.line_tools import ALL_LINE_TOOLS, CGAL_INDICES, LINE_TOOLS
 from ..peers.tool_process import ToolFailedError, ToolProcess, make_task_command
-from ..peers.triangulators import is_cgal
+from ..peers.triangulators import is_compiled, is_exact, name_harness
 from .kernel import find_tools, make_result, run_tools
 
 __all__ = ["SECTION", "run"]
@@ -41,7 +41,7 @@ def run(
 ) -> Outcome:
     """Measure tools on ``n`` points, or ``LEAST_POINTS``, with lines; else as ``kernel.run``."""
     outcome = Outcome()
-    present = find_tools(tools, LINE_TOOLS, "constrained", outcome)
+    present = find_tools(tools, LINE_TOOLS, "lines", outcome)
     for name in names:
         print(f"lines: {name}, {n:,} points", file=sys.stderr, flush=True)
         task = make_lines(name, max(n, LEAST_POINTS))
@@ -54,13 +54,13 @@ class LineProcess(ToolProcess):
 
     def command(self, name: str, task: LineTask, folder: Path) -> list[str]:
         """Write the task for the tool; return what runs it."""
-        if not is_cgal(name):
+        if not is_compiled(name):
             return make_task_command("lines", name, task, folder)
         plane, segments = folder / "points.bin", folder / "segments.bin"
         task.vertices.tofile(plane)
         task.segments.tofile(segments)
         way = "indices" if name == CGAL_INDICES else "handles"
-        return [str(build_harness("constrained")), str(plane), str(segments), way]
+        return [str(build_harness(name_harness(name, "lines"))), str(plane), str(segments), way]
 
 
 def _measure_lines(
@@ -109,6 +109,5 @@ def _judge_lines(tool: str, process: ToolProcess, wanted: _Wanted) -> Verdict:
     except ToolFailedError as error:
         return Verdict(False, str(error))
     found = judge_answer(wanted.tin, answer, wanted.triangles, steps=wanted.steps)
-    is_exact = is_cgal(tool) or LINE_TOOLS[tool].is_exact
-    assert found.is_right or not is_exact, f"{tool}: {found.text}"
+    assert found.is_right or not is_exact(tool, LINE_TOOLS), f"{tool}: {found.text}"
     return found

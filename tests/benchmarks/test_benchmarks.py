@@ -13,7 +13,7 @@ from support import oracles
 import tinsmith as ts
 from benchmarks.__main__ import SECTIONS, main
 from benchmarks.answers import contours, interpolation, profiles, rasters, volumes
-from benchmarks.cgal import CgalMissingError, build, build_harness
+from benchmarks.compiled import PeerMissingError, build, build_harness
 from benchmarks.datasets.edits import BATCH, EDIT_TASKS, INSERT_ALL, WHAT, make_edit_task
 from benchmarks.datasets.lines import LINE_DATASETS, make_lines
 from benchmarks.datasets.points import DATASETS, UTM_CORNER, make_points
@@ -24,7 +24,7 @@ from benchmarks.peers.edit_tools import ALL_EDIT_TOOLS, BUILD, EDIT_TOOLS, OPENE
 from benchmarks.peers.line_tools import ALL_LINE_TOOLS, CGAL_INDICES, LINE_TOOLS
 from benchmarks.peers.programs import find_present, run_program
 from benchmarks.peers.tool_process import ToolFailedError, ToolProcess
-from benchmarks.peers.triangulators import CGAL, KERNEL, TOOLS
+from benchmarks.peers.triangulators import CGAL, DELAUNAY32, KERNEL, TOOLS, is_exact
 from benchmarks.report import page
 from benchmarks.report.__main__ import format_file
 from benchmarks.report.goals import judge_goals as goals_of
@@ -190,14 +190,14 @@ def test_a_wrong_answer_of_an_exact_tool_is_a_failure():
 def test_every_tool_triangulates():
     outcome = kernel.run([("raster", 300)], repeats=2)
     found = {result.tool: result for result in outcome.results}
-    present = kernel.find_tools(kernel.ALL_TOOLS, TOOLS, "delaunay", Outcome())
+    present = kernel.find_tools(kernel.ALL_TOOLS, TOOLS, "points", Outcome())
     assert list(found) == [*present, kernel.WORK]
     assert {OURS, KERNEL} <= set(present)
     assert found[OURS].note == found[KERNEL].note == EQUAL
     for tool in present:
         assert found[tool].count == 289
         assert len(found[tool].runs) == 2
-        if tool == CGAL or TOOLS[tool].is_exact:
+        if is_exact(tool, TOOLS):
             assert found[tool].extra["is_right"], f"{tool}: {found[tool].note}"
     assert found[kernel.WORK].extra["searches"] > 0
 
@@ -221,17 +221,28 @@ def test_a_tool_answers_the_same_at_every_run(tmp_path, tin):
 def test_a_missing_cgal_is_said(monkeypatch, tmp_path):
     monkeypatch.setattr(build, "BUILT", tmp_path / "harness")
     monkeypatch.setattr(build.shutil, "which", lambda name: None)
-    with pytest.raises(CgalMissingError, match=r"g\+\+ is not installed"):
-        build_harness()
+    with pytest.raises(PeerMissingError, match=r"g\+\+ is not installed"):
+        build_harness("cgal_points")
     outcome = Outcome()
-    assert kernel.find_tools([OURS, CGAL], TOOLS, "delaunay", outcome) == [OURS]
+    assert kernel.find_tools([OURS, CGAL], TOOLS, "points", outcome) == [OURS]
     assert outcome.skipped == ["CGAL: skipped, g++ is not installed."]
+
+
+def test_a_missing_source_of_delaunay32_is_said_with_what_fetches_it(monkeypatch, tmp_path):
+    monkeypatch.setattr(build, "BUILT", tmp_path / "harness")
+    monkeypatch.setattr(build.shutil, "which", lambda name: name)
+    monkeypatch.setenv("DELAUNAY32_SOURCE", str(tmp_path / "none"))
+    outcome = Outcome()
+    assert kernel.find_tools([OURS, DELAUNAY32], TOOLS, "points", outcome) == [OURS]
+    (said,) = outcome.skipped
+    assert "its source is not in" in said
+    assert "git clone --branch v0.6.2 https://" in said
 
 
 def test_every_tool_is_either_here_or_named():
     outcome = Outcome()
-    present = kernel.find_tools(kernel.ALL_TOOLS, TOOLS, "delaunay", outcome)
-    assert len(present) + len(outcome.skipped) == len(kernel.ALL_TOOLS) == len(TOOLS) + 1
+    present = kernel.find_tools(kernel.ALL_TOOLS, TOOLS, "points", outcome)
+    assert len(present) + len(outcome.skipped) == len(kernel.ALL_TOOLS)
 
 
 # -------------------------------------------------------------------------- lines

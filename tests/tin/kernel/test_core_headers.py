@@ -119,7 +119,7 @@ def test_the_page_lists_every_folder():
 
 @pytest.mark.skipif(CLANG_FORMAT is None, reason="needs clang-format")
 def test_formatting():
-    folders = [CORE, PRODUCTS, ROOT / "tests" / "cpp", ROOT / "benchmarks" / "cgal"]
+    folders = [CORE, PRODUCTS, ROOT / "tests" / "cpp", ROOT / "benchmarks" / "compiled"]
     sources = list_sources(".hpp", ".cpp", ".inc", folders=folders)
     done = subprocess.run(
         [CLANG_FORMAT, "--dry-run", "--Werror", *map(str, sources)],
