@@ -53,7 +53,7 @@ class _Merged(NamedTuple):
     points: Float64Array
     vertex_of: Int32Array
     polylines: Polylines
-    growth: _kernel.Growth
+    mesh: _kernel.Mesh
     merges: dict[str, Any]
     overruled: Overruled
 
@@ -71,9 +71,10 @@ def triangulate_constrained(
     ``progress`` is told the fraction done of the triangulation of the points. Raises PointsError if
     there is no triangle, or rows coincide that must not; LinesError if lines cross that must not.
     """
-    xyz, threads = points[rows], thread_count(options.threads, len(points))
+    threads = thread_count(options.threads, len(points))
+    xyz = points if len(rows) == len(points) else points[rows]
     merged = _merge(xyz, rows, lines, options, threads=threads, progress=progress)
-    mesh = build_mesh_of_growth(merged.points, merged.growth)
+    mesh = merged.mesh
     noded = accept_noded(merged.polylines, lines.elevations)
     is_simple = options.snap == 0.0 and not (lines.priorities == ABOVE_ALL).any()
     is_forced = is_simple and _is_forced(mesh, noded.polylines)
@@ -89,10 +90,12 @@ def triangulate_constrained(
             names=lines.labels(),
         )
         if is_simple:  # edges were fixed in vain
-            mesh = build_mesh_of_growth(merged.points, merged.growth)
+            mesh.release_all()
         if len(noded.new_points):
             mesh.insert(np.ascontiguousarray(noded.new_points[:, :2]))
-    points = np.concatenate([merged.points, noded.new_points])
+    points = merged.points
+    if len(noded.new_points):
+        points = np.concatenate([points, noded.new_points])
     overruled = _add_touches(points, noded, merged.overruled)
     polylines, wet, overruled = leave_out_water(
         points, noded.polylines, lines, overruled, threads=threads
@@ -151,6 +154,8 @@ def _merge(
     is_kept = place == own
     vertex_of = (np.cumsum(is_kept, dtype=np.int32) - np.int32(1))[place]
     points = rows[is_kept]
+    mesh = build_mesh_of_growth(points, growth)
+    del growth, rows, kept  # the mesh holds as much memory
     # vertices get the elevations of their points, before those of lines
     first = np.full(len(points), n, np.int32)
     np.minimum.at(first, vertex_of[:n], own[:n])
@@ -168,7 +173,7 @@ def _merge(
         merges["merged_rows"] = rows_of[merged_rows].astype(np.int32)
     overruled = _set_line_elevations(points, vertex_of, n, lines)
     polylines = Polylines.whole(vertex_of[n:], lines.offsets)
-    return _Merged(points, vertex_of, polylines, growth, merges, overruled)
+    return _Merged(points, vertex_of, polylines, mesh, merges, overruled)
 
 
 def _set_line_elevations(

@@ -287,9 +287,11 @@ class Triangulator {
     Insertion insertion(grid, team_);
     if (!insertion.run()) return;
     result_.counts.walk_steps = insertion.walk_steps();
-    result_.triangle_count = triangle_count(grid.count(), insertion.hull_size());
+    CanonicalOrder order(grid, insertion.triangles(), team_);
+    if (!order.count()) return;
+    result_.triangle_count = order.triangles();
     allocate();
-    if (!CanonicalOrder(grid, insertion.mesh(), team_).write(result_.arrays())) return;
+    if (!order.write(result_.arrays())) return;
     number_by_rows();
   }
 

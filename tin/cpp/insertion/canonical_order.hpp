@@ -24,56 +24,105 @@
 
 namespace tinsmith {
 
-class CanonicalOrder {
+// Triangles closed by ghosts, with the positions of their corners in the sweep.
+class SweptTriangles {
  public:
-  // Corners of the mesh are sweep numbers. All must outlive the order.
-  CanonicalOrder(const PointGrid& grid, const GhostMesh& mesh, Team& team)
-      : grid_(grid),
-        team_(team),
-        triangles_(mesh.triangles.get()),
-        count_(mesh.count),
-        number_of_(scratch_array<Triangle>(mesh.count)),
-        end_of_(grid.count() + std::size_t{1}) {}
+  // All must outlive this.
+  SweptTriangles(const GhostTriangle* triangles, std::uint32_t count)
+      : triangles_(triangles), count_(count) {}
 
-  // `out` has room for all triangles but the ghosts. Returns false if the team is stopped.
-  bool write(Triangles out) {
-    corners_ = out.corners;
-    neighbors_ = out.neighbors;
-    const auto triangles = static_cast<std::int64_t>(count_);
-    const bool is_shared = team_.size() > 1;
-    if (!in_blocks(triangles, is_shared ? &CanonicalOrder::count_owned<true>
-                                        : &CanonicalOrder::count_owned<false>)) {
-      return false;
-    }
-    begins_from_counts();
-    return in_blocks(triangles,
-                     is_shared ? &CanonicalOrder::deal<true> : &CanonicalOrder::deal<false>) &&
-           in_blocks(grid_.count(), &CanonicalOrder::order_stars) &&
-           in_blocks(triangles, &CanonicalOrder::write_neighbors);
-  }
+  std::uint32_t count() const { return count_; }
+  HalfEdge twin(std::int64_t t, std::uint32_t corner) const { return triangles_[t].twin[corner]; }
+  const GhostTriangle& operator[](std::int64_t t) const { return triangles_[t]; }
 
-  // After `write`: flags[3 * triangle + corner] = is_set(half-edge of the mesh).
-  template <typename Flag, typename IsSet>
-  void write_flags(Flag* flags, IsSet&& is_set) const {
-    for (const Triangle t : Ids<Triangle>(count_)) {
-      if (number_of_[number(t)] == kNoTriangle) continue;
-      const std::uint32_t corner = first_corner(triangles_[number(t)]);
-      Flag* const flag = flags + entry_of(number_of_[number(t)], 0);
-      flag[0] = is_set(half_edge(t, corner));
-      flag[1] = is_set(half_edge(t, corner_after(corner)));
-      flag[2] = is_set(half_edge(t, corner_before(corner)));
-    }
+ private:
+  const GhostTriangle* triangles_;
+  std::uint32_t count_;
+};
+
+// The same where corners are vertices and triangles may be free, which is as if they were of ghosts
+// alone: `sweep_of` by vertex, the ghost's in front.
+class SweptMesh {
+ public:
+  SweptMesh(const GhostTriangle* triangles, std::uint32_t count, const Vertex* sweep_of)
+      : triangles_(triangles), count_(count), sweep_of_(sweep_of) {}
+
+  std::uint32_t count() const { return count_; }
+  HalfEdge twin(std::int64_t t, std::uint32_t corner) const { return triangles_[t].twin[corner]; }
+  struct Corners {
+    Vertex corner[3];
+  };
+  Corners operator[](std::int64_t t) const {
+    const auto& c = triangles_[t].corner;
+    if (c[0] == kFree) return {{kGhost, kGhost, kGhost}};
+    return {{sweep_of_[number(c[0])], sweep_of_[number(c[1])], sweep_of_[number(c[2])]}};
   }
 
  private:
+  const GhostTriangle* triangles_;
+  std::uint32_t count_;
+  const Vertex* sweep_of_;
+};
+
+// `Mesh` is one of both.
+template <typename Mesh>
+class CanonicalOrder {
+ public:
+  // All must outlive the order.
+  CanonicalOrder(const PointGrid& grid, const Mesh& mesh, Team& team)
+      : grid_(grid),
+        team_(team),
+        mesh_(mesh),
+        number_of_(scratch_array<Triangle>(mesh.count())),
+        end_of_(grid.count() + std::size_t{1}) {}
+
+  // Find how many triangles there are without ghosts. Returns false if the team is stopped.
+  bool count() {
+    if (!in_blocks(mesh_.count(), is_shared() ? &CanonicalOrder::count_owned<true>
+                                              : &CanonicalOrder::count_owned<false>)) {
+      return false;
+    }
+    begins_from_counts();
+    return true;
+  }
+  std::int64_t triangles() const { return triangles_; }
+
+  // `out` has room for all triangles. Returns false if the team is stopped.
+  bool write(Triangles out) {
+    return write(out, [](std::int64_t, std::uint32_t, std::size_t) {});
+  }
+
+  // The same; write_more(t, first, entry) is called for every triangle of the mesh, with the corner
+  // that comes first and where it stands in `out`.
+  template <typename WriteMore>
+  bool write(Triangles out, WriteMore&& write_more) {
+    corners_ = out.corners;
+    neighbors_ = out.neighbors;
+    return in_blocks(mesh_.count(),
+                     is_shared() ? &CanonicalOrder::deal<true> : &CanonicalOrder::deal<false>) &&
+           in_blocks(grid_.count(), &CanonicalOrder::order_stars) &&
+           in_blocks(mesh_.count(), [&](std::int64_t begin, std::int64_t end) {
+             write_neighbors(begin, end, write_more);
+           });
+  }
+
+ private:
+  bool is_shared() const { return team_.size() > 1; }
+
   bool in_blocks(std::int64_t count, void (CanonicalOrder::*work)(std::int64_t, std::int64_t)) {
+    return in_blocks(count,
+                     [&](std::int64_t begin, std::int64_t end) { (this->*work)(begin, end); });
+  }
+
+  template <typename Work>
+  bool in_blocks(std::int64_t count, const Work& work) {
     constexpr std::int64_t kBlock = 65536;  // a few milliseconds
     std::atomic<std::int64_t> next{0};
     team_.run([&](int member) {
       while (team_.keeps_going(member)) {
         const std::int64_t begin = next.fetch_add(kBlock);
         if (begin >= count) return;
-        (this->*work)(begin, std::min(begin + kBlock, count));
+        work(begin, std::min(begin + kBlock, count));
       }
     });
     return !team_.is_stopped();
@@ -90,17 +139,17 @@ class CanonicalOrder {
   }
 
   // Corner of the first vertex of the sweep, or of the ghost.
-  static std::uint32_t first_corner(const GhostTriangle& triangle) {
-    const bool is_second = triangle.corner[1] < triangle.corner[0];
-    const Vertex first = triangle.corner[is_second];
-    return triangle.corner[2] < first ? 2 : is_second;
+  static std::uint32_t first_corner(const Vertex (&corner)[3]) {
+    const bool is_second = corner[1] < corner[0];
+    return corner[2] < corner[is_second] ? 2 : is_second;
   }
 
   // One entry on from its owner, so that the ghost's are counted in front.
   template <bool kIsShared>
   void count_owned(std::int64_t begin, std::int64_t end) {
     for (std::int64_t t = begin; t < end; ++t) {
-      const auto& corner = triangles_[t].corner;
+      const auto& triangle = mesh_[t];
+      const auto& corner = triangle.corner;
       add_one<kIsShared>(end_of_[number(std::min({corner[0], corner[1], corner[2]})) + 1]);
     }
   }
@@ -114,13 +163,14 @@ class CanonicalOrder {
       end = total;
       total += size;
     }
+    triangles_ = total;
   }
 
   template <bool kIsShared>
   void deal(std::int64_t begin, std::int64_t end) {
     for (std::int64_t t = begin; t < end; ++t) {
-      const GhostTriangle& triangle = triangles_[t];
-      const std::uint32_t first = first_corner(triangle);
+      const auto& triangle = mesh_[t];
+      const std::uint32_t first = first_corner(triangle.corner);
       const Vertex owner = triangle.corner[first];
       if (owner == kGhost) {
         number_of_[t] = kNoTriangle;
@@ -183,29 +233,29 @@ class CanonicalOrder {
     }
   }
 
-  void write_neighbors(std::int64_t begin, std::int64_t end) {
+  template <typename WriteMore>
+  void write_neighbors(std::int64_t begin, std::int64_t end, WriteMore&& write_more) {
     const Triangle* const number_of = number_of_.get();
     for (std::int64_t t = begin; t < end; ++t) {
       if (number_of[t] == kNoTriangle) continue;
-      const GhostTriangle& triangle = triangles_[t];
-      const std::uint32_t first = first_corner(triangle);
+      const std::uint32_t first = first_corner(mesh_[t].corner);
       const auto beyond = [&](std::uint32_t corner) {
-        return index_of(number_of[number(triangle_of(triangle.twin[corner]))]);
+        return index_of(number_of[number(triangle_of(mesh_.twin(t, corner)))]);
       };
-      std::int32_t* const neighbor = neighbors_ + entry_of(number_of[t], 0);
-      neighbor[0] = beyond(first);
-      neighbor[1] = beyond(corner_after(first));
-      neighbor[2] = beyond(corner_before(first));
+      const std::size_t entry = entry_of(number_of[t], 0);
+      neighbors_[entry] = beyond(first);
+      neighbors_[entry + 1] = beyond(corner_after(first));
+      neighbors_[entry + 2] = beyond(corner_before(first));
+      write_more(t, first, entry);
     }
   }
 
   const PointGrid& grid_;
   Team& team_;
-  const GhostTriangle* triangles_;
-  std::uint32_t count_;
+  Mesh mesh_;
   ScratchArray<Triangle> number_of_;  // of each triangle of the mesh; kNoTriangle of ghosts
-  std::vector<std::atomic<std::int32_t>>
-      end_of_;  // of each owner's triangles, the ghost's in front
+  std::vector<std::atomic<std::int32_t>> end_of_;  // of an owner's triangles, the ghost's in front
+  std::int64_t triangles_ = 0;
   std::int32_t* corners_ = nullptr;
   std::int32_t* neighbors_ = nullptr;
 };

@@ -24,20 +24,6 @@
 
 namespace tinsmith {
 
-// By vertex, with a place for the ghost in front.
-template <typename T>
-class WithGhost {
- public:
-  explicit WithGhost(std::size_t count) : values_(scratch_array<T>(count + 1)) {}
-  T& operator[](Vertex v) { return begin()[number(v)]; }
-  const T& operator[](Vertex v) const { return begin()[number(v)]; }
-  T* begin() const { return values_.get() + 1; }
-  void release() { values_.reset(); }
-
- private:
-  ScratchArray<T> values_;
-};
-
 class CurveOrder {
  public:
   // One part a thread of the team, or fewer. The points must not all be collinear.

@@ -10,6 +10,7 @@
 // edge opposite corner k, as seen from the triangle across it.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 
 #include "../base/arrays.hpp"
@@ -19,18 +20,26 @@ namespace tinsmith {
 
 // The ghost's number, before all vertices; arrays by vertex have a place for it at their front.
 constexpr Vertex kGhost{-1};
+// Corner 0 of a place for triangles that holds none.
+constexpr Vertex kFree{-2};
 
 struct GhostTriangle {
   Vertex corner[3];
   HalfEdge twin[3];
 };
 
-struct GhostMesh {
-  ScratchArray<GhostTriangle> triangles;
-  std::uint32_t count = 0;
+// By vertex, with a place for the ghost in front.
+template <typename T>
+class WithGhost {
+ public:
+  explicit WithGhost(std::size_t count) : values_(scratch_array<T>(count + 1)) {}
+  T& operator[](Vertex v) { return begin()[number(v)]; }
+  const T& operator[](Vertex v) const { return begin()[number(v)]; }
+  T* begin() const { return values_.get() + 1; }
+  void release() { values_.reset(); }
 
-  GhostTriangle& operator[](Triangle t) { return triangles[number(t)]; }
-  const GhostTriangle& operator[](Triangle t) const { return triangles[number(t)]; }
+ private:
+  ScratchArray<T> values_;
 };
 
 }  // namespace tinsmith

@@ -8,7 +8,6 @@
 // triangulate each by itself before they are merged.
 #pragma once
 
-#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -17,6 +16,7 @@
 #include "../base/ids.hpp"
 #include "../base/parallel.hpp"
 #include "../index/grid.hpp"
+#include "canonical_order.hpp"
 #include "curve_order.hpp"
 #include "ghost_mesh.hpp"
 #include "part_insertion.hpp"
@@ -33,23 +33,22 @@ class Insertion {
   // Returns false if the team is stopped.
   bool run() {
     if (!team_.keeps_going(0) || !order_.put_in_order()) return false;
-    mesh_.count = 2 * static_cast<std::uint32_t>(count_) - 2;
-    mesh_.triangles = scratch_array<GhostTriangle>(mesh_.count);
+    triangles_ = scratch_array<GhostTriangle>(triangle_count());
     team_.expect(count_);
     if (!insert_parts() || !merge_parts()) return false;
     number_by_sweep();
     return true;
   }
 
-  const GhostMesh& mesh() const { return mesh_; }
-
-  // Vertices on the hull, which are as many as ghost triangles.
-  std::int64_t hull_size() const { return hull_size_; }
+  // The triangulation, as long as this lives.
+  SweptTriangles triangles() const { return {triangles_.get(), triangle_count()}; }
 
   // Triangles that were walked through to find where points go.
   std::int64_t walk_steps() const { return walk_steps_; }
 
  private:
+  std::uint32_t triangle_count() const { return 2 * static_cast<std::uint32_t>(count_) - 2; }
+
   struct Ends {  // of a part: its first and last vertex along the side that parts divide
     PartMerge::OnHull first, last;
   };
@@ -60,7 +59,7 @@ class Insertion {
     std::vector<std::int64_t> steps(parts);
     team_.run([&](int member) {
       for (std::size_t part = member; part < parts; part += team_.size()) {
-        PartInsertion insertion(order_, order_.parts()[part], mesh_.triangles.get());
+        PartInsertion insertion(order_, order_.parts()[part], triangles_.get());
         const auto keep_going = [&](std::int32_t inserted) {
           team_.advance(inserted);
           return team_.keeps_going(member);
@@ -81,14 +80,14 @@ class Insertion {
       if (at(v) < at(first)) first = v;
       if (at(v) > at(last)) last = v;
     }
-    const PartMerge merge(mesh_.triangles.get(), order_.points.begin());
+    const PartMerge merge(triangles_.get(), order_.points.begin());
     return {merge.on_hull(first, insertion.triangle_at(first)),
             merge.on_hull(last, insertion.triangle_at(last))};
   }
 
   // One after the other: a merge changes few triangles beside the line, unless most lie on a curve.
   bool merge_parts() {
-    PartMerge merge(mesh_.triangles.get(), order_.points.begin());
+    PartMerge merge(triangles_.get(), order_.points.begin());
     for (std::size_t part = 0; part + 1 < ends_.size(); ++part) {
       if (!team_.keeps_going(0)) return false;
       const std::int64_t unused = std::int64_t{2} * order_.parts()[part].end - 2;
@@ -100,28 +99,20 @@ class Insertion {
 
   void number_by_sweep() {
     order_.points.release();
-    std::atomic<std::int64_t> ghosts{0};
-    team_.run([&](int member) {
-      const Range own = part_of(mesh_.count, member, team_.size());
-      std::int64_t found = 0;
+    team_.run([this](int member) {
+      const Range own = part_of(triangle_count(), member, team_.size());
       for (std::int32_t t = own.begin; t < own.end; ++t) {
-        for (Vertex& corner : mesh_.triangles[t].corner) {
-          found += corner == kGhost;
-          corner = order_.sweep_of[corner];
-        }
+        for (Vertex& corner : triangles_[t].corner) corner = order_.sweep_of[corner];
       }
-      ghosts += found;
     });
-    hull_size_ = ghosts;
     order_.sweep_of.release();
   }
 
   Team& team_;
   std::int32_t count_;
   CurveOrder order_;
-  GhostMesh mesh_;
+  ScratchArray<GhostTriangle> triangles_;
   std::vector<Ends> ends_;
-  std::int64_t hull_size_ = 0;
   std::int64_t walk_steps_ = 0;
 };
 

@@ -112,6 +112,8 @@ class CheckedMesh {
     return released;
   }
 
+  void release_all() { editor_.release_all(); }
+
   // The fixed edges that are not Delaunay, as (from, to) pairs.
   std::vector<std::int32_t> illegal_fixed_edges() {
     std::vector<std::int32_t> illegal;

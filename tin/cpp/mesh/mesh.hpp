@@ -20,6 +20,7 @@
 
 #include "../base/arrays.hpp"
 #include "../base/ids.hpp"
+#include "../insertion/canonical_order.hpp"
 #include "../insertion/ghost_mesh.hpp"
 
 namespace tinsmith {
@@ -83,6 +84,10 @@ class Mesh {
   }
   bool is_free(Triangle t) const { return (*this)[t].corner[0] == kFree; }
   const GhostTriangle& operator[](Triangle t) const { return triangles_[number(t)]; }
+  // As the order of triangles takes them, by the position in the sweep of each vertex.
+  SweptMesh swept(const Vertex* sweep_of) const {
+    return {triangles_.data(), triangle_slots(), sweep_of};
+  }
   std::uint32_t triangle_slots() const { return static_cast<std::uint32_t>(triangles_.size()); }
   Ids<Triangle> triangles() const { return Ids<Triangle>(triangle_slots()); }  // free ones too
   std::uint32_t triangle_count() const {
@@ -238,7 +243,6 @@ class Mesh {
   }
 
  private:
-  static constexpr Vertex kFree{-2};
   static constexpr std::uint8_t kMark = 8, kProven = 16;  // beyond the bits of the three edges
 
   struct Side {  // what lies beyond an edge

@@ -113,80 +113,65 @@ inline MeshEditor editor_of(const PointRows& rows, const GivenTriangles& given) 
 class MeshArrays {
  public:
   MeshArrays(const MeshEditor& editor, Team& team) : editor_(editor), mesh_(editor.mesh()) {
-    gather_vertices();
-    const PointGrid grid({&points_[0].x, editor.count(), 2}, team);
-    const GhostMesh copy = swept_copy(grid);
-    triangle_count = copy.count - ghosts_;
-    corners = streamed_array<std::int32_t>(3 * std::size_t{triangle_count});
-    neighbors = streamed_array<std::int32_t>(3 * std::size_t{triangle_count});
-    fixed = streamed_array<bool>(3 * std::size_t{triangle_count});
-    CanonicalOrder order(grid, copy, team);
-    order.write(Triangles{corners.get(), neighbors.get()});
-    order.write_flags(fixed.get(), [this](HalfEdge e) {
-      if (slot_of_.empty()) return mesh_.is_fixed(e);
-      return mesh_.is_fixed(half_edge(slot_of_[number(triangle_of(e))], corner_of(e)));
+    release_freed_memory();
+    if (editor.count() < editor.slots()) gather_vertices();
+    const Point* const points = points_.empty() ? editor.points().begin() : points_.data();
+    const PointGrid grid({&points->x, editor.count(), 2}, team);
+    const WithGhost<Vertex> sweep_of = find_sweep(grid, team);
+    CanonicalOrder order(grid, mesh_.swept(sweep_of.begin()), team);
+    if (!order.count()) return;
+    triangle_count = static_cast<std::size_t>(order.triangles());
+    corners = streamed_array<std::int32_t>(3 * triangle_count);
+    neighbors = streamed_array<std::int32_t>(3 * triangle_count);
+    fixed = streamed_array<bool>(3 * triangle_count);
+    order.write(Triangles{corners.get(), neighbors.get()},
+                [this](std::int64_t t, std::uint32_t first, std::size_t entry) {
+                  const HalfEdge e = half_edge(triangle_numbered(t), first);
+                  fixed[entry] = mesh_.is_fixed(e);
+                  fixed[entry + 1] = mesh_.is_fixed(Mesh::after(e));
+                  fixed[entry + 2] = mesh_.is_fixed(Mesh::before(e));
+                });
+    team.run([&](int member) {
+      const auto entries = static_cast<std::int64_t>(3 * triangle_count);
+      const std::int64_t begin = entries * member / team.size();
+      const std::int64_t end = entries * (member + 1) / team.size();
+      for (std::int64_t i = begin; i < end; ++i) corners[i] = number(grid.rows()[corners[i]]);
     });
-    for (std::size_t i = 0; i < 3 * std::size_t{triangle_count}; ++i) {
-      corners[i] = number(grid.rows()[corners[i]]);
-    }
   }
 
   StreamedArray<std::int32_t> corners, neighbors;
   StreamedArray<bool> fixed;
-  std::uint32_t triangle_count = 0;
+  std::size_t triangle_count = 0;
 
  private:
   void gather_vertices() {
     points_.reserve(editor_.count());
-    number_of_.resize(editor_.slots(), kNoVertex);
+    slot_of_.reserve(editor_.count());
     for (const Vertex v : editor_.vertices()) {
       if (!mesh_.is_alive(v)) continue;
-      number_of_[number(v)] = Vertex{static_cast<std::int32_t>(points_.size())};
+      slot_of_.push_back(v);
       points_.push_back(editor_.point(v));
     }
   }
 
-  // Without gaps, corners numbered by the sweep.
-  GhostMesh swept_copy(const PointGrid& grid) {
-    const auto sweep_of = scratch_array<Vertex>(points_.size());
-    for (const Vertex v : Ids<Vertex>(grid.count())) sweep_of[number(grid.rows()[number(v)])] = v;
-    GhostMesh copy;
-    copy.triangles = scratch_array<GhostTriangle>(mesh_.triangle_count());
-    const std::vector<Triangle> in_copy = close_gaps();
-    for (const Triangle t : mesh_.triangles()) {
-      if (mesh_.is_free(t)) continue;
-      GhostTriangle& to = copy.triangles[copy.count++];
-      for (int k = 0; k < 3; ++k) {
-        const Vertex v = mesh_[t].corner[k];
-        const HalfEdge twin = mesh_[t].twin[k];
-        ghosts_ += v == kGhost;
-        to.corner[k] = v == kGhost ? kGhost : sweep_of[number(number_of_[number(v)])];
-        to.twin[k] =
-            in_copy.empty() ? twin : half_edge(in_copy[number(triangle_of(twin))], corner_of(twin));
+  // Of each slot its vertex's position in the sweep.
+  WithGhost<Vertex> find_sweep(const PointGrid& grid, Team& team) const {
+    WithGhost<Vertex> sweep_of(editor_.slots());
+    sweep_of[kGhost] = kGhost;
+    team.run([&](int member) {
+      const Range own = part_of(grid.count(), member, team.size());
+      for (const Vertex v : Ids<Vertex>(own.begin, own.end)) {
+        const Vertex given{number(grid.rows()[number(v)])};
+        sweep_of[slot_of_.empty() ? given : slot_of_[number(given)]] = v;
       }
-    }
-    return copy;
-  }
-
-  // Each triangle's number in the copy; empty if there are no gaps.
-  std::vector<Triangle> close_gaps() {
-    if (mesh_.triangle_count() == mesh_.triangle_slots()) return {};
-    std::vector<Triangle> in_copy(mesh_.triangle_slots());
-    slot_of_.reserve(mesh_.triangle_count());
-    for (const Triangle t : mesh_.triangles()) {
-      if (mesh_.is_free(t)) continue;
-      in_copy[number(t)] = Triangle{static_cast<std::uint32_t>(slot_of_.size())};
-      slot_of_.push_back(t);
-    }
-    return in_copy;
+    });
+    return sweep_of;
   }
 
   const MeshEditor& editor_;
   const Mesh& mesh_;
-  ScratchVector<Point> points_;      // of the vertices, without gaps
-  ScratchVector<Vertex> number_of_;  // of each slot
-  std::vector<Triangle> slot_of_;    // of each triangle of the copy; empty if the same
-  std::uint32_t ghosts_ = 0;
+  ScratchVector<Point> points_;    // of the vertices, where slots are without one
+  ScratchVector<Vertex> slot_of_;  // of each of these
 };
 
 }  // namespace tinsmith

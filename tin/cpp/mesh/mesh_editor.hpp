@@ -43,6 +43,7 @@ class MeshEditor {
   Ids<Vertex> vertices() const { return Ids<Vertex>(slots()); }  // those that are gone, too
   std::int32_t count() const { return count_; }                  // of vertices
   Point point(Vertex v) const { return points_[v]; }
+  const MeshPoints& points() const { return points_; }
 
   // Make every edge Delaunay that is not fixed, of a mesh that was not so.
   void legalize_all() {
@@ -189,6 +190,20 @@ class MeshEditor {
     pending_.push_back(e);
     legalize();
     return true;
+  }
+
+  // Let all fixed edges go.
+  void release_all() {
+    for (const Triangle t : mesh_.triangles()) {
+      if (mesh_.is_free(t)) continue;
+      for (const HalfEdge e : half_edges(t)) {
+        if (!mesh_.is_fixed(e)) continue;
+        mesh_.fix(e, false);
+        last_ = e;
+        pending_.push_back(e);
+      }
+    }
+    legalize();
   }
 
   // Call `visit(from, to)` once for every fixed edge that would not stay if it were not fixed.

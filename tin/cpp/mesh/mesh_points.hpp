@@ -16,6 +16,7 @@ class MeshPoints {
  public:
   Point& operator[](Vertex v) { return points_[static_cast<std::size_t>(number(v))]; }
   const Point& operator[](Vertex v) const { return points_[static_cast<std::size_t>(number(v))]; }
+  const Point* begin() const { return points_.data(); }
   std::int32_t slots() const { return static_cast<std::int32_t>(points_.size()); }
 
   void reserve(std::size_t slots) { points_.reserve(slots); }

@@ -88,6 +88,10 @@ class HeldMesh {
     return hand_over(held_->crossed(pairs_of(segments), only_fixed));
   }
   std::int32_t release(const GivenPairs& segments) { return held_->release(pairs_of(segments)); }
+  void release_all() {
+    ReleasedLock release;
+    held_->release_all();
+  }
 
   Numbers illegal_fixed_edges() {
     const auto illegal = [&] {
@@ -197,6 +201,7 @@ inline void bind_mesh(nb::module_& m) {
            "The corners left and right of the edge from a to b; none if it is no inner edge.")
       .def("crossed", &HeldMesh::crossed, "segments"_a.noconvert(), "only_fixed"_a = false,
            "Edges that segments cross, flat triples of segment, start and end.")
+      .def("release_all", &HeldMesh::release_all, "Let all fixed edges go.")
       .def("release", &HeldMesh::release, "segments"_a.noconvert(),
            "Let fixed edges go; how many there were.")
       .def("arrays", &HeldMesh::arrays, "threads"_a = 1,
