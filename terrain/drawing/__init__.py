@@ -1,6 +1,6 @@
 """Drawing: what pages, plans, charts and notebooks share: lines, numbers, 3D models, HTML."""
 
-from .arguments import parse_text, parse_title, require_features
+from .arguments import UNTITLED, parse_text, parse_title, require_features
 from .linework import EDGE_KINDS, LineEdges, add_lines, add_polylines, find_line_edges, join_edges
 from .models import choose_origin
 from .north_up import draw_north_up
@@ -31,6 +31,7 @@ __all__ = [
     "SAMPLE_FRAME",
     "STEEPNESS",
     "TRIANGULATIONS",
+    "UNTITLED",
     "Color",
     "LineEdges",
     "Palette",

@@ -11,6 +11,10 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
 
 
+UNTITLED = "Terrain surface"
+"""Title of what nobody gave one."""
+
+
 def parse_title(title: Any, usual: str) -> str:
     r"""Return a title on one line, the usual one if none is given.
 
@@ -21,15 +25,15 @@ def parse_title(title: Any, usual: str) -> str:
     >>> parse_title("Two\n lines", "Profile"), parse_title(None, "Profile")
     ('Two lines', 'Profile')
     """
-    if title is None:
-        return usual
-    return " ".join((parse_text("title", title) or usual).split())
+    return " ".join(parse_text("title", title, or_none=True).split()) or usual
 
 
-def parse_text(option: str, text: Any) -> str:
-    """Return a text, or refuse what is none."""
+def parse_text(option: str, text: Any, *, or_none: bool = False) -> str:
+    """Return a text, or refuse what is none; None, where it is allowed, is an empty one."""
+    if text is None and or_none:
+        return ""
     if not isinstance(text, str):
-        raise OptionError(option, text, "text")
+        raise OptionError(option, text, "text", or_none=or_none)
     return text
 
 

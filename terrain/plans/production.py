@@ -19,7 +19,7 @@ from ...base.policies import ContourLabeling, GridStyle, PointMarking, SheetLayo
 from ...base.products import product
 from ...base.sentences import counted
 from ...tin import Bounds, Survey
-from ..drawing import draw_north_up, parse_text
+from ..drawing import UNTITLED, draw_north_up, parse_text, parse_title
 from ..surface import as_features, as_segments
 from .arrangement import Ground, choose_single, cut_rows, cut_strip_windows
 from .canvas import Canvas
@@ -383,9 +383,8 @@ class _Wording(NamedTuple):
     def of(cls, title: Any, date: Any) -> _Wording:
         if isinstance(date, dt.date):
             date = date.isoformat()[:10]
-        words = clean_text(parse_text("date", "" if date is None else date))
-        given = clean_text(parse_text("title", "" if title is None else title))
-        return cls(given or "Terrain surface", words)
+        words = clean_text(parse_text("date", date, or_none=True))
+        return cls(clean_text(parse_title(title, UNTITLED)), words)
 
 
 def _as_axis(axis: Any, tin: TIN, layout: str) -> tuple[Float64Array | None, list[str]]:

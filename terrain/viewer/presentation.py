@@ -188,7 +188,7 @@ class Preview:
         content = describe_page(
             surfaces,
             ground,
-            title=" ".join(self._look.title.split()),
+            title=self._look.title,
             start=self._choose_start(ground),
             changes=changes,
             labels=labels,

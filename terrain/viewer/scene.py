@@ -286,7 +286,7 @@ def _make_title_block(
         parts.append(f"{strip} of {length}{unit}, to read from left to right, then down")
     ends = options.elevations or (shown.low, shown.high)
     return TitleBlock(
-        title=" ".join(options.title.split()),
+        title=options.title,
         subtitle="  \N{MIDDLE DOT}  ".join(parts),
         exaggeration=factor,
         elevations=ends,
