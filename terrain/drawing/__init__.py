@@ -1,6 +1,8 @@
 """Drawing: what pages, plans, charts and notebooks share: lines, numbers, 3D models, HTML."""
 
 from .arguments import UNTITLED, parse_text, parse_title, require_features
+from .furniture import NORTH_ARROW, Legend, make_legend, make_scale_bar
+from .lettering import Lettering, fit_text
 from .linework import EDGE_KINDS, LineEdges, add_lines, add_polylines, find_line_edges, join_edges
 from .models import choose_origin
 from .north_up import draw_north_up
@@ -27,12 +29,15 @@ __all__ = [
     "BACKGROUNDS",
     "COMPASS",
     "EDGE_KINDS",
+    "NORTH_ARROW",
     "PAGE",
     "SAMPLE_FRAME",
     "STEEPNESS",
     "TRIANGULATIONS",
     "UNTITLED",
     "Color",
+    "Legend",
+    "Lettering",
     "LineEdges",
     "Palette",
     "add_lines",
@@ -43,10 +48,13 @@ __all__ = [
     "choose_ticks",
     "draw_north_up",
     "find_line_edges",
+    "fit_text",
     "format_number",
     "interpolate_colors",
     "interpolate_tints",
     "join_edges",
+    "make_legend",
+    "make_scale_bar",
     "mix_tints",
     "parse_hex",
     "parse_text",

@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 
 
-def round_down(value: float, *, leads: tuple[float, ...] = (1.0, 2.0, 5.0)) -> float:
-    """Return the largest lead times a power of ten that is at most ``value`` (above 0).
+def round_down(value: float) -> float:
+    """Return the largest of 1, 2, 5 times a power of ten that is at most ``value`` (above 0).
 
     Examples
     --------
@@ -14,8 +14,8 @@ def round_down(value: float, *, leads: tuple[float, ...] = (1.0, 2.0, 5.0)) -> f
     (0.5, 200.0, 20.0)
     """
     power = 10.0 ** math.floor(math.log10(value))
-    fitting = [lead * power for lead in leads if lead * power <= value * (1 + 1e-9)]
-    return max(fitting, default=leads[-1] * power / 10)
+    fitting = (lead * power for lead in (5.0, 2.0, 1.0) if lead * power <= value * (1 + 1e-9))
+    return next(fitting, power / 2)
 
 
 def choose_ticks(low: float, high: float, *, count: int) -> list[float]:

@@ -2,7 +2,7 @@
 
 from .bands import contour_bands
 from .checking import ContourCheck, check_contours
-from .labels import contour_labels
+from .labels import contour_labels, count_decimals
 from .levels import LevelOptions, Levels, as_levels
 from .lines import as_features, contours
 
@@ -16,4 +16,5 @@ __all__ = [
     "contour_bands",
     "contour_labels",
     "contours",
+    "count_decimals",
 ]

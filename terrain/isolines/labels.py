@@ -177,7 +177,7 @@ class _TakenPlaces:
 def _as_features(lines: Features, labels: list[_Label]) -> Features:
     numbers = np.array([label.line for label in labels], np.int64)
     levels = lines.columns["elevation"][numbers]
-    decimals = _count_decimals(lines.columns["elevation"])
+    decimals = count_decimals(lines.columns["elevation"])
     places = np.array([(label.x, label.y) for label in labels], np.float64).reshape(-1, 2)
     columns: dict[str, AnyArray] = {
         "text": np.array([f"{level + 0.0:.{decimals}f}" for level in levels] or [], object),
@@ -197,7 +197,7 @@ def _as_features(lines: Features, labels: list[_Label]) -> Features:
     )
 
 
-def _count_decimals(levels: Float64Array) -> int:
+def count_decimals(levels: Float64Array) -> int:
     """Return how many decimals tell the levels to a millionth of the least step between them."""
     levels = np.unique(levels)
     steps = np.diff(levels) if len(levels) > 1 else np.abs(levels)

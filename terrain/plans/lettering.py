@@ -9,34 +9,25 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from ...base import optional
+from .. import drawing
 from .windows import turn
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from ...base.arrays import Float64Array
     from ...tin import Bounds
+    from ..drawing import Lettering
 
 FONT = "DejaVu Sans"
 """Comes with matplotlib, and is embedded in a PDF."""
 PURPOSE = "A plan"
 
 _ODD_LETTER = "\N{REPLACEMENT CHARACTER}"
-_ELLIPSIS = "\N{HORIZONTAL ELLIPSIS}"
-_LONGEST = 1000
-"""Letters that are looked at: no cell holds more."""
 _SMALLER = 0.94
 
 _CELL = 8.0
 """Millimetres; a text is looked for in the cells that it covers."""
-
-
-class Lettering(NamedTuple):
-    """A text in lines, as it fits."""
-
-    lines: tuple[str, ...]
-    size: float
-    """Of the letters, millimetres."""
-    is_cut: bool
-    """Whether the end is left out."""
 
 
 def clean_text(text: str) -> str:
@@ -117,36 +108,14 @@ def fit_text(text: str, width: float, *, size: float, least: float, lines: int =
     >>> fit_text("Site plan", 50.0, size=4.0, least=2.0)
     Lettering(lines=('Site plan',), size=4.0, is_cut=False)
     """
-    is_long = len(text) > _LONGEST
-    text = text[:_LONGEST]
-    while True:
-        wrapped = _wrap(text, width, size)
-        if len(wrapped) <= lines and not is_long:
-            return Lettering(tuple(wrapped), size, is_cut=False)
-        if size <= least:
-            break
-        size = max(_SMALLER * size, least)
-    kept = wrapped[:lines]
-    while kept[-1] and measure_text(kept[-1] + _ELLIPSIS, size) > width:
-        kept[-1] = kept[-1][:-1]
-    return Lettering((*kept[:-1], kept[-1].rstrip() + _ELLIPSIS), size, is_cut=True)
+    return drawing.fit_text(text, width, _list_sizes(size, least), measure_text, lines=lines)
 
 
-def _wrap(text: str, width: float, size: float) -> list[str]:
-    """Break a text between words, and words that are too long between letters."""
-    lines = [""]
-    for word in text.split(" "):
-        longer = f"{lines[-1]} {word}".strip()
-        if measure_text(longer, size) <= width:
-            lines[-1] = longer
-            continue
-        if lines[-1]:
-            lines.append("")
-        for letter in word:
-            if lines[-1] and measure_text(lines[-1] + letter, size) > width:
-                lines.append("")
-            lines[-1] += letter
-    return lines
+def _list_sizes(size: float, least: float) -> Iterator[float]:
+    while size > least:
+        yield size
+        size *= _SMALLER
+    yield least
 
 
 def outline_text(

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from decimal import Decimal
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -12,7 +11,7 @@ import numpy as np
 from ...base import optional
 from ...base.results import Features
 from ..drawing import palette
-from ..isolines import contour_labels
+from ..isolines import contour_labels, count_decimals
 from .canvas import Canvas, Pen
 from .clipping import Paths, clip_paths, join_paths
 from .grid import draw_grid
@@ -236,11 +235,11 @@ def _place_labels(seen: Paths, lines: Features, labeling: str) -> list[_Text]:
     if is_silent:
         return []
     labels = contour_labels(shown, spacing=_SPACING, index_only=labeling == "index")
-    written = _write_levels(columns["elevation"])
+    decimals = count_decimals(columns["elevation"])
     rows = zip(
         labels.coordinates[:, :2].tolist(),
         labels.columns["rotation"].tolist(),
-        [written[level] for level in labels.columns["elevation"].tolist()],
+        [f"{level + 0.0:.{decimals}f}" for level in labels.columns["elevation"].tolist()],
         seen.sources[labels.columns["line"]].tolist(),
         strict=True,
     )
@@ -251,18 +250,6 @@ def _make_outline(center: tuple[float, float], rotation: float, text: str, sourc
     width = measure_text(text, _LETTERS) + 1.0
     corners = outline_text(center, width, _CAPITAL * _LETTERS + 0.8, rotation)
     return _Text(center, rotation, text, corners, source)
-
-
-def _write_levels(levels: Float64Array) -> dict[float, str]:
-    """Write levels with as many decimals as the finest of them has."""
-    values = np.unique(levels).tolist()
-    decimals = max((_count_decimals(value) for value in values), default=0)
-    return {value: f"{value + 0.0:.{decimals}f}" for value in values}
-
-
-def _count_decimals(value: float) -> int:
-    """Return how many decimals the shortest way to write a number has."""
-    return max(0, -int(Decimal(str(value)).normalize().as_tuple().exponent))
 
 
 def _cut_out(paths: Paths, texts: list[_Text]) -> Paths:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from ...tin import Bounds
-from ..drawing import format_number, palette, round_down
+from ..drawing import NORTH_ARROW, make_scale_bar, palette
 from .canvas import INK, Pen
 from .grid import PEN as GRID_PEN
 from .lettering import fit_text
@@ -152,9 +152,9 @@ def _draw_north_arrow(canvas: Canvas, layout: Layout, angle: float) -> None:
     """Draw an arrow to grid north, turned against the sheet."""
     cell, factor = layout.scales, layout.factor
     middle = np.array([cell.xmin + cell.width / 2, cell.ymin + 0.66 * cell.height])
-    shape = factor * np.array([(0.0, 8.0), (-2.6, -6.0), (0.0, -3.6), (2.6, -6.0), (0.0, 8.0)])
-    canvas.fill([turn(shape[[0, 1, 2, 0]], -angle) + middle], INK, "north-arrow")
-    canvas.draw_paths([turn(shape, -angle) + middle], _RULE, "north-arrow-outline")
+    shape = turn(7.0 * factor * NORTH_ARROW, -angle) + middle
+    canvas.fill([shape[[0, 1, 2, 0]]], INK, "north-arrow")
+    canvas.draw_paths([shape[[0, 1, 2, 3, 0]]], _RULE, "north-arrow-outline")
     beside = turn(np.array([4.6 * factor, 5.4 * factor]), -angle) + middle
     canvas.write(
         tuple(beside.tolist()),
@@ -170,9 +170,8 @@ def _draw_north_arrow(canvas: Canvas, layout: Layout, angle: float) -> None:
 def _draw_scale_bar(canvas: Canvas, layout: Layout, window: Window, caption: Caption) -> None:
     """Draw a bar of four parts, black and white, with its ends and middle labelled."""
     cell, factor = layout.scales, layout.factor
-    room = cell.width - 12.0 * factor
-    length = round_down(room / window.mm_per_unit, leads=(1.0, 2.0, 4.0, 5.0, 8.0))
-    width, height = length * window.mm_per_unit, 1.5 * factor
+    bar = make_scale_bar(caption.unit, (cell.width - 12.0 * factor) / window.mm_per_unit)
+    width, height = bar.length * window.mm_per_unit, 1.5 * factor
     left, low = cell.xmin + (cell.width - width) / 2, cell.ymin + 3.4 * factor
     for part in range(4):
         box = Bounds(left + part * width / 4, low, left + (part + 1) * width / 4, low + height)
@@ -180,17 +179,17 @@ def _draw_scale_bar(canvas: Canvas, layout: Layout, window: Window, caption: Cap
         canvas.fill([ring], INK if part % 2 == 0 else "white", "scale-bar-part")
     outline = list_corners(Bounds(left, low, left + width, low + height))
     canvas.draw_paths([outline[[0, 1, 2, 3, 0]]], _THIN, "scale-bar")
-    for share in (0.0, 0.5, 1.0):
+    for share, text in bar.labels:
         canvas.write(
             (left + share * width, low + height + 0.8 * factor),
-            format_number(share * length, step=length / 2),
+            text,
             size=1.9 * factor,
             across="center",
             name="scale-bar-label",
         )
     canvas.write(
         (left + width / 2, low - 0.7 * factor),
-        caption.unit.symbol or caption.unit.name,
+        bar.symbol or caption.unit.name,
         size=1.9 * factor,
         across="center",
         up="top",

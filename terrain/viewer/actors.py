@@ -9,9 +9,9 @@ import numpy as np
 
 from ...base import optional
 from ...tin.topology import edges_at
-from ..drawing import choose_origin, choose_ramp, palette, parse_hex
-from ..surface import Light
-from .legend import ElevationRange, find_elevation_range, measure_tint
+from ..drawing import choose_origin, choose_ramp, make_legend, palette, parse_hex
+from ..surface import Light, compute_normals, measure_aspects, measure_slopes
+from .legend import ElevationRange, find_elevation_range
 
 if TYPE_CHECKING:
     from ...base.arrays import BoolArray, Float32Array, Float64Array, Int32Array
@@ -207,12 +207,14 @@ def _choose_tints(
     pv: Any, surface: Any, tin: TIN, tint: Tint, ends: tuple[float, float]
 ) -> dict[str, Any]:
     """Return what a plotter needs to colour a surface, and give it what the colours tell."""
-    values, legend = measure_tint(tin, tint, ends, "")
-    if values is None or legend is None:
+    legend = make_legend(tint, ends, "")
+    if legend is None:
         return {"color": parse_hex(palette.PLAIN)}
     low, high = legend.ends if legend.ends[0] < legend.ends[1] else (ends[0] - 0.5, ends[0] + 0.5)
-    if tint != "elevation":
-        surface.cell_data[tint] = values
+    if tint == "slope":
+        surface.cell_data[tint] = measure_slopes(compute_normals(tin), "degrees")
+    elif tint == "aspect":
+        surface.cell_data[tint] = measure_aspects(compute_normals(tin))
     colors = np.column_stack([choose_ramp(tint, 256), np.full(256, 255, np.uint8)])
     table = pv.LookupTable(
         values=colors, scalar_range=(low, high), nan_color=parse_hex(palette.PLAIN)

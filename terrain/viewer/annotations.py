@@ -8,15 +8,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ...tin import Bounds
-from ..drawing import Palette, choose_ramp, choose_ticks, format_number, round_down
+from ..drawing import NORTH_ARROW, Palette, choose_ticks, format_number, make_scale_bar
 from .actors import NORTHWEST
 from .camera import View, measure_pixels_per_unit, name_direction, project_ground_axes
-from .legend import Legend
 from .overlay import fit_title, shorten
 
 if TYPE_CHECKING:
     from ...base.crs import Unit
-    from ..drawing import Color
+    from ..drawing import Color, Legend
     from ..surface import Light
     from .overlay import Overlay
 
@@ -25,7 +24,7 @@ _COMPASS_RADIUS = 32.0
 _HEADER = 112.0
 _FOOTER = 140.0
 _BAR_LEFT = MARGIN + 112.0
-_BAR_WIDTH = 260.0
+BAR_WIDTH = 260.0
 _NOTES_LEFT = MARGIN + 456.0
 _LEGEND_WIDTH = 400.0
 _LEAST_FORESHORTENING = 0.05
@@ -52,10 +51,8 @@ class TitleBlock:
     title: str
     subtitle: str
     exaggeration: float
-    elevations: tuple[float, float]
-    """Lowest and highest."""
-    elevation_caption: str
-    """Their unit, as it stands behind "Elevation"; "" if it is not known."""
+    legend: Legend | None
+    """Of the colours; None where they tell nothing."""
     unit: Unit
     """Of lengths in the scene."""
     sun: Light = NORTHWEST
@@ -63,10 +60,6 @@ class TitleBlock:
     warning: str = ""
     """What a reader must know of the elevations; "" for nothing."""
     palette: Palette = Palette()  # noqa: RUF009 - colours that are never changed
-    legend: Legend | None = None
-    """Of the colours; default that of the elevations."""
-    has_tints: bool = True
-    """Whether colours that tell something are seen anywhere."""
 
 
 def annotate(overlay: Overlay, layout: Layout, title_block: TitleBlock, camera: Any) -> None:
@@ -88,18 +81,6 @@ def annotate(overlay: Overlay, layout: Layout, title_block: TitleBlock, camera: 
     _draw_legend(overlay, layout, title_block)
 
 
-def scale_bar_length(unit: Unit, pixels: float) -> tuple[float, float, str]:
-    """Choose the length of the scale bar, where a length of 1 has so many design pixels.
-
-    Returns the length in ``unit``, that of the scene; the number to write for it, and the symbol to
-    write behind it.
-    """
-    length = round_down(_BAR_WIDTH / pixels)
-    if unit.symbol == "m" and length >= 1000:
-        return length, length / 1000, "km"
-    return length, length, unit.symbol
-
-
 def _draw_title(overlay: Overlay, layout: Layout, title_block: TitleBlock) -> None:
     room, palette = layout.width - 2 * MARGIN, title_block.palette
     title = fit_title(overlay, title_block.title, room)
@@ -118,8 +99,7 @@ def _draw_north_arrow(overlay: Overlay, camera: Any, palette: Palette) -> None:
     center = np.array([MARGIN + _COMPASS_RADIUS, 66.0])
     turn = np.linspace(0.0, 2 * np.pi, 49)
     overlay.draw_line(np.column_stack([np.sin(turn), np.cos(turn)]) @ axes + center, grey)
-    needle = np.array([(0.0, 1.25), (-0.42, -0.7), (0.0, -0.4), (0.42, -0.7)]) @ axes + center
-    tip, left, notch, right = needle
+    tip, left, notch, right = NORTH_ARROW @ axes + center
     overlay.draw_polygon([tip, left, notch], ink)
     overlay.draw_polygon([tip, notch, right], paper)
     overlay.draw_line([tip, left, notch, right, tip, notch], ink, width=1.2)
@@ -131,21 +111,17 @@ def _draw_north_arrow(overlay: Overlay, camera: Any, palette: Palette) -> None:
 
 def _draw_scale_bar(overlay: Overlay, unit: Unit, pixels: float, palette: Palette) -> None:
     ink, grey, paper, _ = palette
-    length, shown, symbol = scale_bar_length(unit, pixels)
-    left, bottom, height, width = _BAR_LEFT, 62.0, 7.0, length * pixels
+    bar = make_scale_bar(unit, BAR_WIDTH / pixels)
+    left, bottom, height, width = _BAR_LEFT, 62.0, 7.0, bar.length * pixels
     for part, color in enumerate((ink, paper, ink, paper)):
         overlay.draw_rectangle((left + part * width / 4, bottom), (width / 4, height), color)
     outline = [(0, 0), (width, 0), (width, height), (0, height), (0, 0)]
     overlay.draw_line(np.add(outline, (left, bottom)), ink, width=1.2)
-    for fraction in (0.0, 0.5, 1.0):
-        words = format_number(fraction * shown, step=shown / 2) if fraction else "0"
-        if fraction == 1.0:
-            words = format_number(shown, step=shown)
-        place = (left + fraction * width, bottom + 14.0)
+    for share, words in bar.labels:
+        place = (left + share * width, bottom + 14.0)
         overlay.draw_text(place, words, ink, size=15, align="center")
-        if fraction == 1.0:
-            half = overlay.measure_text(words, size=15) / 2
-            overlay.draw_text((place[0] + half + 5.0, place[1]), symbol, ink, size=15)
+    beside = place[0] + overlay.measure_text(words, size=15) / 2 + 5.0
+    overlay.draw_text((beside, place[1]), bar.symbol, ink, size=15)
     overlay.draw_text((left, 38.0), "true from left to right", grey, size=14)
 
 
@@ -180,9 +156,9 @@ def _draw_legend(overlay: Overlay, layout: Layout, title_block: TitleBlock) -> N
     if title_block.warning:
         words = shorten(overlay, title_block.warning, _LEGEND_WIDTH, size=14)
         overlay.draw_text((left, bottom + height + 31.0), words, palette.warning, size=14)
-    if not title_block.has_tints:
+    legend = title_block.legend
+    if legend is None:
         return
-    legend = title_block.legend or _describe_elevations(title_block)
     overlay.draw_text((left, bottom + height + 8.0), legend.name, palette.ink, size=15)
     overlay.draw_scale((left, bottom), (_LEGEND_WIDTH, height), legend.colors)
     if not legend.ticks:
@@ -192,11 +168,6 @@ def _draw_legend(overlay: Overlay, layout: Layout, title_block: TitleBlock) -> N
     for value, words in legend.ticks:
         x = left + _LEGEND_WIDTH * (value - low) / (high - low)
         _draw_legend_tick(overlay, words, (x, bottom), palette.ink)
-
-
-def _describe_elevations(title_block: TitleBlock) -> Legend:
-    name = f"Elevation ({title_block.elevation_caption or 'unit not known'})"
-    return Legend(name, choose_ramp("elevation", 100), title_block.elevations)
 
 
 def _draw_legend_tick(

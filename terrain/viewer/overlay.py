@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-from functools import cache
+from functools import cache, partial
 from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-if TYPE_CHECKING:
-    from collections.abc import Callable
+from ..drawing import fit_text
 
+if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from ...base.arrays import UInt8Array
@@ -36,10 +36,6 @@ _LAYOUTS = (
 )
 """Sizes of letters, and how far below the upper edge the lines and the next line stand, for one,
 two and three lines, design pixels."""
-
-_MOST_LETTERS = 900
-
-_ELLIPSIS = "..."
 
 
 class Overlay:
@@ -188,50 +184,15 @@ def fit_title(overlay: Overlay, words: str, room: float) -> Title:
     The overlay measures words; ``room`` is the width for it, design pixels. A title that is too
     long for three lines is cut, which three dots at its end show.
     """
-    kept = words[:_MOST_LETTERS]
+    measure = partial(overlay.measure_text, bold=True)
     for sizes, drops, next_drop in _LAYOUTS:
-        for size in sizes:
-            lines = _wrap(kept, room, _measure_with(overlay, size))
-            if len(lines) <= len(drops) and len(kept) == len(words):
-                return Title(tuple(lines), size, drops[: len(lines)], next_drop)
-    last = " ".join(lines[len(drops) - 1 :]) + _ELLIPSIS
-    lines = [*lines[: len(drops) - 1], shorten(overlay, last, room, size=size, bold=True)]
-    return Title(tuple(lines), size, drops, next_drop)
+        fitted = fit_text(words, room, sizes, measure, lines=len(drops))
+        title = Title(fitted.lines, fitted.size, drops[: len(fitted.lines)], next_drop)
+        if not fitted.is_cut:
+            break
+    return title
 
 
-def shorten(overlay: Overlay, words: str, room: float, *, size: float, bold: bool = False) -> str:
+def shorten(overlay: Overlay, words: str, room: float, *, size: float) -> str:
     """Cut words that are too long for the room, and show that they are cut."""
-    words = words[:_MOST_LETTERS]
-    measure = _measure_with(overlay, size, bold=bold)
-    if measure(words) <= room:
-        return words
-    return words[: _count_fitting(words, room, measure, _ELLIPSIS)].rstrip() + _ELLIPSIS
-
-
-def _measure_with(overlay: Overlay, size: float, *, bold: bool = True) -> Callable[[str], float]:
-    return lambda words: overlay.measure_text(words, size=size, bold=bold)
-
-
-def _wrap(words: str, room: float, measure: Callable[[str], float]) -> list[str]:
-    """Part words into lines, between words where it can be done."""
-    lines = []
-    rest = words
-    while measure(rest) > room:
-        count = max(_count_fitting(rest, room, measure), 1)
-        gap = rest.rfind(" ", 1, count + 1)
-        stop = count if gap < 0 else gap
-        lines.append(rest[:stop].rstrip())
-        rest = rest[stop:].lstrip()
-    return [*lines, rest]
-
-
-def _count_fitting(words: str, room: float, measure: Callable[[str], float], end: str = "") -> int:
-    """Return how many letters fit, by halving: a longer text is never narrower."""
-    low, high = 0, len(words)
-    while low < high:
-        middle = (low + high + 1) // 2
-        if measure(words[:middle] + end) <= room:
-            low = middle
-        else:
-            high = middle - 1
-    return low
+    return fit_text(words, room, [size], overlay.measure_text).lines[0]

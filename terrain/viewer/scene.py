@@ -11,7 +11,15 @@ from ...base import optional
 from ...base.georeference.units import find_ground
 from ...base.sentences import counted
 from ...tin import Bounds
-from ..drawing import add_lines, add_polylines, choose_origin, format_number, palette, parse_hex
+from ..drawing import (
+    add_lines,
+    add_polylines,
+    choose_origin,
+    format_number,
+    make_legend,
+    palette,
+    parse_hex,
+)
 from ..isolines import contours
 from .actors import (
     BLOCK_SHARE,
@@ -28,7 +36,6 @@ from .actors import (
 from .annotations import Layout, TitleBlock, annotate
 from .camera import aim, measure_pixels_per_unit, place_camera, project_ground_axes
 from .corridor import cut_into_strips, find_corridor, measure_mean_width
-from .legend import measure_tint
 from .overlay import Overlay
 
 if TYPE_CHECKING:
@@ -77,6 +84,11 @@ class Scene:
     """Picture draped over the surface."""
 
     @property
+    def elevations(self) -> tuple[float, float]:
+        """Of the lowest and the highest tint."""
+        return self.options.elevations or (self.shown.low, self.shown.high)
+
+    @property
     def exaggeration(self) -> float:
         """Factor on heights."""
         return self.title_block.exaggeration
@@ -106,8 +118,8 @@ def make_scene(
         if has_strips:
             factor, strips = _cut(tin, ground, options, view)
     title_block = _make_title_block(tin, ground, options, shown, factor, corridor, strips)
-    is_covered = ortho is not None and ortho.gap == 0.0
-    title_block = replace(title_block, has_tints=options.tint != "plain" and not is_covered)
+    if ortho is not None and ortho.gap == 0.0:
+        title_block = replace(title_block, legend=None)
     depth = BLOCK_SHARE * measure_extent(tin, ground)
     has_block = strips is None and measure_mean_width(tin, ground) >= _LEAST_WIDTH * depth
     return Scene(tin, ground, options, view, shown, title_block, has_block, strips, ortho)
@@ -225,7 +237,7 @@ def add_scene(plotter: Any, scene: Scene, factor: float) -> tuple[list[Any], Flo
         scene.tin,
         points,
         edges=scene.options.edges,
-        elevations=scene.title_block.elevations,
+        elevations=scene.elevations,
         tint=scene.options.tint,
         is_far_off=scene.shown.is_far_off,
         has_block=scene.has_block,
@@ -289,13 +301,11 @@ def _make_title_block(
         title=options.title,
         subtitle="  \N{MIDDLE DOT}  ".join(parts),
         exaggeration=factor,
-        elevations=ends,
-        elevation_caption=ground.elevation_caption,
+        legend=make_legend(options.tint, ends, ground.elevation_caption),
         unit=ground.unit,
         sun=options.sun,
         warning=_warn(tin, options, shown),
         palette=options.palette,
-        legend=measure_tint(tin, options.tint, ends, ground.elevation_caption)[1],
     )
 
 

@@ -10,6 +10,7 @@ import numpy as np
 
 import tinsmith as ts
 from tinsmith.base.crs import METRE
+from tinsmith.terrain.drawing import make_legend
 from tinsmith.terrain.viewer.annotations import TitleBlock, annotate
 from tinsmith.terrain.viewer.camera import View, aim
 from tinsmith.terrain.viewer.corridor import STRIP_GAP
@@ -116,7 +117,8 @@ def project(camera: Any, points: Any, size: Any) -> Any:
 def examine_annotations(scene: Any, layout: Any, camera: Any) -> None:
     overlay, size = Recorder(), (layout.width, layout.height)
     unit = float(camera.parallel_scale)
-    title_block = TitleBlock(scene.title_block.title, "S", 1.0, (0.0, 1.0), "m", METRE)
+    legend = make_legend("elevation", (0.0, 1.0), "m")
+    title_block = TitleBlock(scene.title_block.title, "S", 1.0, legend, METRE)
     annotate(overlay, layout, title_block, camera)  # type: ignore[arg-type]
     view: View = scene.view
     turn = math.radians(view.azimuth)

@@ -12,13 +12,14 @@ import pytest
 from tinsmith import triangulate
 from tinsmith.base.crs import METRE
 from tinsmith.base.georeference.units import find_ground
+from tinsmith.terrain.drawing import make_legend, make_scale_bar
 from tinsmith.terrain.drawing.palette import Palette, interpolate_tints
 from tinsmith.terrain.viewer.actors import add_lights, place_vertices
 from tinsmith.terrain.viewer.annotations import (
+    BAR_WIDTH,
     Layout,
     TitleBlock,
     annotate,
-    scale_bar_length,
 )
 from tinsmith.terrain.viewer.camera import (
     VIEWS,
@@ -35,6 +36,7 @@ pv = pytest.importorskip("pyvista")
 INK, GREY, PAPER, WARNING = Palette()
 LAYOUT = Layout(1400.0, 900.0)
 EXTENT = 500.0
+LEGEND = make_legend("elevation", (0.0, 1.0), "m")
 
 
 class Recorder:
@@ -78,7 +80,8 @@ def annotated(view, *, extent=EXTENT, elevations=(312.4, 398.6), exaggeration=2.
     camera, overlay = pv.Camera(), Recorder()
     square = np.array([[x, y, 0.0] for x in (0, extent) for y in (0, extent)])
     aim(camera, square, view=view, frame=LAYOUT.frame, size=(LAYOUT.width, LAYOUT.height))
-    title_block = TitleBlock("Title", "Subtitle", exaggeration, elevations, "m", METRE)
+    legend = make_legend("elevation", elevations, "m")
+    title_block = TitleBlock("Title", "Subtitle", exaggeration, legend, METRE)
     annotate(overlay, LAYOUT, title_block, camera)
     return overlay, camera
 
@@ -122,7 +125,7 @@ def test_the_caption_states_the_exaggeration_that_is_drawn(factor):
 def test_the_scale_bar_is_as_long_as_it_says(extent):
     overlay, camera = annotated(VIEWS["top"], extent=extent)
     pixels = measure_pixels_per_unit(camera, LAYOUT.height)
-    length, shown, symbol = scale_bar_length(METRE, pixels)
+    length, symbol, labels = make_scale_bar(METRE, BAR_WIDTH / pixels)
     parts = [r for r in overlay.rectangles if r[3] == 7.0]
     assert [color for *_, color in parts] == [INK, PAPER, INK, PAPER]
     left = parts[0][0]
@@ -133,18 +136,20 @@ def test_the_scale_bar_is_as_long_as_it_says(extent):
     assert np.ptp(outline[:, 0]) == pytest.approx(length * pixels)
     assert outline[:, 0].min() == pytest.approx(left)
     assert 0.4 * 260 <= length * pixels <= 260
-    words = f"{shown:,.12g}"
-    assert overlay.place_of(words)[0] == pytest.approx(left + length * pixels)
+    shown = length / 1000 if symbol == "km" else length
+    assert labels[-1] == (1.0, f"{shown:,.12g}")
+    assert overlay.place_of(labels[-1][1])[0] == pytest.approx(left + length * pixels)
     assert overlay.place_of("0")[0] == pytest.approx(left)
     assert overlay.place_of(symbol)[0] > left + length * pixels
 
 
 @pytest.mark.parametrize(
     ("length", "expected"),
-    [(1000, (1000, 1, "km")), (500, (500, 500, "m")), (2000, (2000, 2, "km"))],
+    [(1000, (1000, "1", "km")), (500, (500, "500", "m")), (2000, (2000, "2", "km"))],
 )
 def test_kilometres_begin_at_one(length, expected):
-    assert scale_bar_length(METRE, 259.9 / length) == expected
+    bar = make_scale_bar(METRE, BAR_WIDTH * length / 259.9)
+    assert (bar.length, bar.labels[-1][1], bar.symbol) == expected
 
 
 # ------------------------------------------------------------------ north arrow
@@ -235,7 +240,7 @@ def written_title(title, subtitle="short"):
     """The lines of a title as an overlay is asked to write them, with their sizes."""
     overlay, camera = Recorder(), pv.Camera()
     aim(camera, np.eye(3), view=VIEWS["top"], frame=LAYOUT.frame, size=(1400, 900))
-    annotate(overlay, LAYOUT, TitleBlock(title, subtitle, 1.0, (0.0, 1.0), "m", METRE), camera)
+    annotate(overlay, LAYOUT, TitleBlock(title, subtitle, 1.0, LEGEND, METRE), camera)
     written = zip(overlay.texts, overlay.styles, strict=True)
     lines = [(said, y, size) for (said, _, y, _), (_, size, bold) in written if bold]
     return overlay, [line for line in lines if line[0] != "N"]

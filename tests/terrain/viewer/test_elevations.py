@@ -30,7 +30,8 @@ def test_a_blunder_changes_neither_tints_nor_exaggeration_nor_frame(value, rows)
         make_scene(hill([(row, z) for row in rows]), PreviewOptions.of()) for z in (310.0, value)
     )
     assert wrong.exaggeration == sound.exaggeration
-    assert wrong.title_block.elevations == pytest.approx(sound.title_block.elevations, abs=0.2)
+    assert wrong.elevations == pytest.approx(sound.elevations, abs=0.2)
+    assert wrong.title_block.legend.ends == wrong.elevations
     assert np.flatnonzero(wrong.shown.is_far_off).tolist() == sorted(rows)
     assert f"{value:,g}" in wrong.title_block.warning
     assert sound.title_block.warning == ""
@@ -76,7 +77,7 @@ def test_blunders_at_both_ends_are_left_out():
 def test_a_range_asked_for_is_that_of_the_tints_and_the_legend_says_what_is_outside():
     tin = hill()
     scene = make_scene(tin, PreviewOptions.of(elevations=(305.0, 312.0)))
-    assert scene.title_block.elevations == (305.0, 312.0)
+    assert scene.elevations == scene.title_block.legend.ends == (305.0, 312.0)
     z = tin.points[:, 2]
     count = int(((z < 305) | (z > 312)).sum())
     assert scene.title_block.warning == f"{count} elevations out of this range"

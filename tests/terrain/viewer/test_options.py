@@ -12,6 +12,7 @@ from support.pictures import make_dipping_plane, read_pixels
 from tinsmith import triangulate
 from tinsmith.base.crs import METRE
 from tinsmith.terrain import OptionError, preview
+from tinsmith.terrain.drawing import make_legend
 from tinsmith.terrain.drawing.palette import choose_palette, compute_lightness
 from tinsmith.terrain.viewer.actors import add_lights
 from tinsmith.terrain.viewer.annotations import Layout, TitleBlock, annotate
@@ -19,6 +20,8 @@ from tinsmith.terrain.viewer.camera import View, aim, measure_pixels_per_unit, p
 from tinsmith.terrain.viewer.options import PreviewOptions
 
 pv = pytest.importorskip("pyvista")
+
+LEGEND = make_legend("elevation", (0.0, 1.0), "m")
 
 
 # ------------------------------------------------------------------ what is allowed
@@ -102,7 +105,7 @@ def test_north_arrow_and_scale_bar_are_those_of_the_projection(azimuth, tilt):
     pixels = measure_pixels_per_unit(camera, 1000.0)
     np.testing.assert_allclose(across - start, [pixels, 0.0], atol=1e-6)
     np.testing.assert_allclose((north - start) / pixels, project_ground_axes(camera)[1], atol=1e-9)
-    title_block = TitleBlock("T", "S", 1.0, (0.0, 1.0), "m", METRE)
+    title_block = TitleBlock("T", "S", 1.0, LEGEND, METRE)
     drawn = record(layout, title_block, camera)
     tip, center = drawn["tip"], drawn["center"]
     np.testing.assert_allclose((tip - center) / 40.0, (north - start) / pixels, atol=1e-6)
@@ -178,9 +181,7 @@ def test_the_caption_says_where_the_light_comes_from(sun, words):
 
     camera = pv.Camera()
     aim(camera, np.eye(3), view=View(0, 40), frame=Layout(1600, 1000).frame, size=(1600, 1000))
-    title_block = TitleBlock(
-        "T", "S", 1.0, (0.0, 1.0), "m", METRE, sun=PreviewOptions.of(sun=sun).sun
-    )
+    title_block = TitleBlock("T", "S", 1.0, LEGEND, METRE, sun=PreviewOptions.of(sun=sun).sun)
     annotate(Recorder(), Layout(1600.0, 1000.0), title_block, camera)
     assert words in texts
 

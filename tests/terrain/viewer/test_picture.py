@@ -15,11 +15,12 @@ from tinsmith import TIN, MissingExtraError, triangulate
 from tinsmith.base.crs import FOOT, METRE
 from tinsmith.base.georeference.units import NOT_KNOWN, find_ground
 from tinsmith.terrain import OptionError, RenderError, preview, slope
+from tinsmith.terrain.drawing import make_scale_bar
 from tinsmith.terrain.drawing.palette import compute_lightness, interpolate_tints
 from tinsmith.terrain.drawing.rounding import choose_ticks, format_number, round_down
 from tinsmith.terrain.viewer import opengl
 from tinsmith.terrain.viewer.actors import choose_exaggeration, measure_relief
-from tinsmith.terrain.viewer.annotations import Layout, scale_bar_length
+from tinsmith.terrain.viewer.annotations import BAR_WIDTH, Layout
 from tinsmith.terrain.viewer.picture import PICTURE_SUFFIXES
 
 pv = pytest.importorskip("pyvista")
@@ -361,15 +362,16 @@ def test_a_chosen_exaggeration_is_not_too_much(relief):
 @pytest.mark.parametrize(
     ("unit", "pixels", "expected"),
     [
-        (METRE, 2.0, (100.0, 100.0, "m")),
-        (METRE, 0.05, (5000.0, 5.0, "km")),
-        (METRE, 900.0, (0.2, 0.2, "m")),
-        (FOOT, 0.05, (5000.0, 5000.0, "ft")),
-        (NOT_KNOWN, 1.0, (200.0, 200.0, "")),
+        (METRE, 2.0, (100.0, "100", "m")),
+        (METRE, 0.05, (5000.0, "5", "km")),
+        (METRE, 900.0, (0.2, "0.2", "m")),
+        (FOOT, 0.05, (5000.0, "5,000", "ft")),
+        (NOT_KNOWN, 1.0, (200.0, "200", "")),
     ],
 )
 def test_the_scale_bar_has_a_round_length(unit, pixels, expected):
-    assert scale_bar_length(unit, pixels) == expected
+    bar = make_scale_bar(unit, BAR_WIDTH / pixels)
+    assert (bar.length, bar.labels[-1][1], bar.symbol) == expected
 
 
 # ------------------------------------------------------------------ units
@@ -442,10 +444,7 @@ def test_lengths_are_rounded_down_to_one_two_five(value, expected):
     assert round_down(value) == pytest.approx(expected)
 
 
-def test_lengths_are_rounded_down_to_the_leads_asked_for():
-    leads = (2.0, 5.0)
-    rounded = [round_down(value, leads=leads) for value in (1.5, 2.0, 4.9, 15.0, 0.019)]
-    assert rounded == pytest.approx([0.5, 2.0, 2.0, 5.0, 0.005])
+def test_what_is_round_but_for_rounding_stays():
     assert round_down(20 - 1e-12) == 20.0  # but for rounding
 
 
