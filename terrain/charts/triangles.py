@@ -10,7 +10,7 @@ from ...base.errors import OptionError
 from ...base.georeference.axes import find_axes
 from ...base.georeference.units import find_ground
 from ...base.products import product
-from ..drawing import EDGE_KINDS, find_line_edges, palette
+from ..drawing import LINE_STYLES, find_line_edges, palette
 from ..surface import compute_normals, measure_slopes
 
 if TYPE_CHECKING:
@@ -92,7 +92,7 @@ def plot_tin(
             unit = {"elevation": ground.elevation_caption, "slope": "degrees"}.get(name, "")
             ax.figure.colorbar(mapped, ax=ax, shrink=0.7, label=f"{name}, {unit}" if unit else name)
     if with_edges:
-        ax.triplot(triangles, color="0.25", linewidth=0.3)
+        ax.triplot(triangles, color=palette.EDGES_CHART, linewidth=0.3)
     if with_lines:
         _draw_lines(ax, tin)
     _set_axes(ax, tin, ground, is_new=is_new)
@@ -122,15 +122,10 @@ def _find_values(tin: TIN, values: Any) -> tuple[Float64Array | None, str]:
 
 def _draw_lines(ax: Any, tin: TIN) -> None:
     collection = optional.load("matplotlib.collections", "Drawing a TIN").LineCollection
-    found = find_line_edges(tin)
-    for rank, kind in enumerate(EDGE_KINDS):
-        pairs = found.pairs[found.kinds == rank]
-        if len(pairs):
-            style = "--" if kind == "soft" else "-"
-            ends = tin.points[pairs][..., :2]
-            ax.add_collection(
-                collection(ends, colors=palette.LINES[kind], linewidths=1.2, linestyles=style)
-            )
+    for kind, pairs in find_line_edges(tin).by_kind().items():
+        style = LINE_STYLES[kind]
+        how = {"colors": style.color, "linestyles": "--" if style.dashed else "-"}
+        ax.add_collection(collection(tin.points[pairs][..., :2], linewidths=1.2, **how))
 
 
 def _set_axes(ax: Any, tin: TIN, ground: Ground, *, is_new: bool) -> None:

@@ -3,7 +3,15 @@
 from .arguments import UNTITLED, parse_text, parse_title, require_features
 from .furniture import NORTH_ARROW, Legend, make_legend, make_scale_bar
 from .lettering import Lettering, fit_text
-from .linework import EDGE_KINDS, LineEdges, add_lines, add_polylines, find_line_edges, join_edges
+from .linework import (
+    EDGE_KINDS,
+    LINE_STYLES,
+    LineEdges,
+    add_lines,
+    add_polylines,
+    find_line_edges,
+    join_edges,
+)
 from .models import choose_origin
 from .north_up import draw_north_up
 from .palette import (
@@ -29,6 +37,7 @@ __all__ = [
     "BACKGROUNDS",
     "COMPASS",
     "EDGE_KINDS",
+    "LINE_STYLES",
     "NORTH_ARROW",
     "PAGE",
     "SAMPLE_FRAME",

@@ -16,27 +16,28 @@ if TYPE_CHECKING:
     from ...tin import TIN
     from .palette import Color
 
-EDGE_KINDS = ("soft", "hard", "hole", "boundary", "water")
-"""Kinds of lines; where several share an edge it is of the last in this list."""
-
 _PURPOSE = "A preview"
 
 
-class _Pen(NamedTuple):
-    """How a kind is drawn; ``width`` is in design pixels."""
+class LineStyle(NamedTuple):
+    """How a kind of lines is named and drawn; ``width`` is in design pixels."""
 
-    color: Color
+    title: str
+    color: str
     width: float
-    is_dashed: bool = False
+    dashed: bool = False
 
 
-_PENS = {
-    "soft": _Pen(parse_hex(palette.LINES["soft"]), 1.8, is_dashed=True),
-    "hard": _Pen(parse_hex(palette.LINES["hard"]), 1.7),
-    "hole": _Pen(parse_hex(palette.LINES["hole"]), 2.0),
-    "boundary": _Pen(parse_hex(palette.LINES["boundary"]), 2.4),
-    "water": _Pen(parse_hex(palette.LINES["water"]), 2.6),
+LINE_STYLES = {
+    "soft": LineStyle("Soft breaklines", palette.LINES["soft"], 1.8, dashed=True),
+    "hard": LineStyle("Breaklines", palette.LINES["hard"], 1.7),
+    "hole": LineStyle("Holes", palette.LINES["hole"], 2.0),
+    "boundary": LineStyle("Boundary", palette.LINES["boundary"], 2.4),
+    "water": LineStyle("Water", palette.LINES["water"], 2.6),
 }
+EDGE_KINDS = tuple(LINE_STYLES)
+"""Kinds of lines; where several share an edge it is of the last in this list."""
+
 _DASH_SHARE = 0.006
 """Length of a dash, and of the gap after it, as a share of the extent."""
 
@@ -51,6 +52,15 @@ class LineEdges(NamedTuple):
     """(k, 2), vertices, in the direction of the line."""
     kinds: Int8Array
     """(k,), indices into ``EDGE_KINDS``."""
+
+    def of(self, kind: str) -> Int32Array:
+        """Return the edges of a kind, (k, 2)."""
+        edges: Int32Array = self.pairs[self.kinds == EDGE_KINDS.index(kind)]
+        return edges
+
+    def by_kind(self) -> dict[str, Int32Array]:
+        """Return the edges of each kind that there is."""
+        return {EDGE_KINDS[rank]: self.of(EDGE_KINDS[rank]) for rank in np.unique(self.kinds)}
 
 
 def find_line_edges(tin: TIN, *, guess: bool = True) -> LineEdges:
@@ -102,21 +112,17 @@ def add_lines(plotter: Any, tin: TIN, points: Float64Array, *, factor: float = 1
     ``points`` are its vertices as drawn, (n, 3); ``factor`` window pixels for one design pixel.
     Returns an actor for each kind there is.
     """
-    found = find_line_edges(tin)
+    pv = optional.load("pyvista", _PURPOSE)
     actors = []
-    for rank, kind in enumerate(EDGE_KINDS):
-        pen, pairs = _PENS[kind], found.pairs[found.kinds == rank]
-        if len(pairs) == 0:
-            continue
-        ends = points[pairs]
-        if pen.is_dashed:
+    for kind, pairs in find_line_edges(tin).by_kind().items():
+        style, ends = LINE_STYLES[kind], points[pairs]
+        if style.dashed:
             extent = float(np.ptp(points[:, :2], axis=0).max())
             ends = cut_into_dashes(ends, pairs, _DASH_SHARE * extent)
-        pv = optional.load("pyvista", _PURPOSE)
         count = len(ends)
         cells = np.column_stack([np.full(count, 2), np.arange(2 * count).reshape(count, 2)])
         mesh = pv.PolyData(ends.reshape(-1, 3), lines=cells.ravel())
-        actors.append(_draw(plotter, mesh, pen.color, pen.width * factor))
+        actors.append(_draw(plotter, mesh, parse_hex(style.color), style.width * factor))
     return actors
 
 

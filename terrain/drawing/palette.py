@@ -46,6 +46,9 @@ BACKGROUNDS = {"white": "#ffffff", "black": "#000000", "light": "#f4f2ee", "dark
 
 # ----------------------------------------------------------------------- charts
 
+EDGES_CHART = "#404040"
+THUMBNAIL, THUMBNAIL_LINES = "#2672b5", "#c44e26"
+"""A blue that stands out from white and from near black, and of lines among points."""
 CURVES = ("#7a5230", "#c0392b", "#1f618d", "#6c3483", "#117864")
 CUT, FILL = "#eba694", "#9cc9e4"
 """Of areas in sections: the hues of a map of cut and fill."""

@@ -128,11 +128,7 @@ def _trace(tin: TIN, chosen: Any, smooth: float | None) -> Features:
 
 def _gather_lines(tin: TIN) -> tuple[dict[str, Paths], Paths]:
     found = find_lines(tin)
-    linework = {}
-    for rank, kind in enumerate(EDGE_KINDS):
-        pairs = found.pairs[found.kinds == rank]
-        if len(pairs):
-            linework[kind] = _chain_edges(tin.points, pairs)
+    linework = {kind: _chain_edges(tin.points, pairs) for kind, pairs in found.by_kind().items()}
     known = {tuple(pair) for pair in np.sort(found.pairs, axis=1).tolist()}
     bare = [
         pair

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from ...base import optional
-from ..drawing import EDGE_KINDS, find_line_edges
+from ..drawing import find_line_edges
 
 if TYPE_CHECKING:
     from ...base.arrays import AnyArray, BoolArray, Float64Array, Int32Array, Int64Array
@@ -44,8 +44,7 @@ def find_footprint(tin: TIN) -> Footprint:
     triangles, since rings may be cut by the boundary.
     """
     shapely = optional.load("shapely")
-    found = find_line_edges(tin)
-    edges = found.pairs[found.kinds == EDGE_KINDS.index("water")]
+    edges = find_line_edges(tin).of("water")
     rings = [np.append(ring, ring[0]) for ring in tin.boundary]
     boundary = [np.column_stack([ring[:-1], ring[1:]]) for ring in rings]
     pairs = np.unique(np.sort(np.concatenate([edges, *boundary]), axis=1), axis=0)

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from .clipping import clip_paths, join_paths
-from .mapping import MATCH_PEN, draw_outline
+from .mapping import MATCH_PEN, Map
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -30,7 +30,7 @@ def draw_index(
     grid: str,
 ) -> Drawn:
     """Draw the edge of a surface, its lines, its water, and the frames of sheets by number."""
-    drawn = draw_outline(canvas, window, contents, grid=grid)
+    drawn = Map(canvas, window, contents).draw_outline(grid=grid)
     rings = [window.to_paper(one.corners) for one in maps.values()]
     closed = [ring[[0, 1, 2, 3, 0]] for ring in rings]
     pen = MATCH_PEN._replace(dashes=(), width=0.25)

@@ -58,8 +58,6 @@ class Drawn:
     """Of "contour", "index contour", "water area", "outline", "point", "match line", and kinds of
     lines.
     """
-    labels: int = 0
-    """Elevations that were written on contours."""
     crowded: int = 0
     """Points whose labels had no room."""
 
@@ -72,52 +70,192 @@ class _Text(NamedTuple):
     source: int  # the contour that it is of
 
 
-def draw_map(
-    canvas: Canvas,
-    window: Window,
-    contents: Contents,
-    *,
-    labeling: str,
-    grid: str,
-    numbers: tuple[int, ...],
-) -> Drawn:
-    """Draw the ground of a window: water, contours, lines, points, grid, match lines, frame.
+class Map:
+    """The ground within the frame of a window, drawn on a sheet layer by layer."""
 
-    ``labeling`` is "index", "all" or "none", ``grid`` "crosses", "lines" or "none"; ``numbers`` are
-    those of the sheet of each window, as match lines name them.
-    """
-    drawn, room = Drawn(set()), Room(window.frame)
-    _fill_water(canvas, window, contents, drawn)
-    draw_grid(canvas, window, grid, contents.axes)
-    for match in window.matches:  # first, for their texts to have room
-        _draw_match(canvas, window, match, numbers[match.window], room, drawn)
-    _draw_contours(canvas, window, contents, labeling, room, drawn)
-    _draw_linework(canvas, window, contents, drawn)
-    if contents.marks is not None:
-        _draw_marks(canvas, window, contents.marks, room, drawn)
-    _draw_frame(canvas, window)
-    return drawn
+    def __init__(self, canvas: Canvas, window: Window, contents: Contents) -> None:
+        self._canvas = canvas
+        self._window = window
+        self._contents = contents
+        self._room = Room(window.frame)
+        self.drawn = Drawn(set())
 
+    def draw(self, *, labeling: str, grid: str, numbers: tuple[int, ...]) -> Drawn:
+        """Draw water, grid, match lines, contours, lines, points and frame.
 
-def draw_outline(canvas: Canvas, window: Window, contents: Contents, *, grid: str) -> Drawn:
-    """Draw the edge, the lines and the water of a surface alone, with grid and frame."""
-    drawn = Drawn(set())
-    _fill_water(canvas, window, contents, drawn)
-    draw_grid(canvas, window, grid, contents.axes)
-    _draw_linework(canvas, window, contents, drawn)
-    _draw_frame(canvas, window)
-    return drawn
+        ``labeling`` is "index", "all" or "none", ``grid`` "crosses", "lines" or "none"; ``numbers``
+        are those of the sheet of each window, as match lines name them.
+        """
+        self._fill_water()
+        draw_grid(self._canvas, self._window, grid, self._contents.axes)
+        for match in self._window.matches:  # first, for their texts to have room
+            self._draw_match(match, numbers[match.window])
+        self._draw_contours(labeling)
+        self._draw_linework()
+        if self._contents.marks is not None:
+            self._draw_marks(self._contents.marks)
+        self._draw_frame()
+        return self.drawn
 
+    def draw_outline(self, *, grid: str) -> Drawn:
+        """Draw the edge, the lines and the water of a surface alone, with grid and frame."""
+        self._fill_water()
+        draw_grid(self._canvas, self._window, grid, self._contents.axes)
+        self._draw_linework()
+        self._draw_frame()
+        return self.drawn
 
-def _draw_linework(canvas: Canvas, window: Window, contents: Contents, drawn: Drawn) -> None:
-    _draw_paths(canvas, window, contents.outline, OUTLINE_PEN, "outline", drawn)
-    for kind, paths in contents.linework.items():
-        _draw_paths(canvas, window, paths, LINE_PENS[kind], kind, drawn)
+    def _draw_linework(self) -> None:
+        self._draw_paths(self._contents.outline, OUTLINE_PEN, "outline")
+        for kind, paths in self._contents.linework.items():
+            self._draw_paths(paths, LINE_PENS[kind], kind)
 
+    def _draw_paths(self, paths: Paths, pen: Pen, kind: str) -> None:
+        parts = clip_to_window(paths, self._window).parts()
+        if parts:
+            self._canvas.draw_paths(parts, pen, kind if kind == "outline" else f"{kind}-lines")
+            self.drawn.kinds.add(kind)
 
-def _draw_frame(canvas: Canvas, window: Window) -> None:
-    corners = list_corners(window.frame)
-    canvas.draw_paths([corners[[0, 1, 2, 3, 0]]], _FRAME_PEN, "frame")
+    def _draw_frame(self) -> None:
+        corners = list_corners(self._window.frame)
+        self._canvas.draw_paths([corners[[0, 1, 2, 3, 0]]], _FRAME_PEN, "frame")
+
+    def _fill_water(self) -> None:
+        shapely = optional.load("shapely")
+        box, footprint = shapely.box(*_list_sides(self._window)), self._contents.footprint
+        for face in footprint.faces[footprint.is_water]:
+            moved = shapely.make_valid(shapely.transform(face, self._window.to_paper))
+            for part in shapely.get_parts(shapely.intersection(moved, box)):
+                if shapely.area(part) > 0:
+                    rings = [shapely.get_coordinates(ring) for ring in shapely.get_rings(part)]
+                    self._canvas.fill(rings, palette.WATER, "water")
+                    self.drawn.kinds.add("water area")
+
+    # ---------------------------------------------------------------- contours
+
+    def _draw_contours(self, labeling: str) -> None:
+        lines, canvas = self._contents.contours, self._canvas
+        seen = clip_to_window(Paths.whole(lines.coordinates[:, :2], lines.offsets[0]), self._window)
+        is_index = lines.columns["is_index"]
+        texts: list[_Text] = []
+        if labeling != "none":
+            texts = self._choose_labels(_place_labels(seen, lines, labeling))
+        cut = _cut_out(seen, texts)
+        for flag, kind in ((False, "contour"), (True, "index contour")):
+            parts = cut.choose(is_index == flag)
+            if parts:
+                canvas.draw_paths(parts, CONTOUR_PENS[flag], f"{kind.replace(' ', '-')}s")
+                self.drawn.kinds.add(kind)
+        for text in texts:
+            canvas.write(
+                text.center,
+                text.text,
+                size=_LETTERS,
+                color=CONTOUR_PENS[True].color,
+                rotation=text.rotation,
+                across="center",
+                up="center_baseline",
+                name="contour-label",
+            )
+
+    def _choose_labels(self, texts: list[_Text]) -> list[_Text]:
+        """Keep the labels that have room; one on a line only where its contour has no other."""
+        shapely = optional.load("shapely")
+        shown = (clip_to_window(paths, self._window) for paths in self._contents.linework.values())
+        barriers = shapely.STRtree(
+            [shapely.LineString(p) for paths in shown for p in paths.parts()]
+        )
+        boxes = shapely.polygons(np.array([text.corners for text in texts]).reshape(-1, 4, 2))
+        hit = np.zeros(len(texts), np.bool_)
+        hit[barriers.query(boxes, predicate="intersects")[0]] = True
+        free = [text for text, is_hit in zip(texts, hit, strict=True) if not is_hit]
+        kept = [text for text in free if self._room.take(text.corners)]
+        named = {text.source for text in kept}
+        for text in (text for text, is_hit in zip(texts, hit, strict=True) if is_hit):
+            if text.source not in named and self._room.take(text.corners):
+                kept.append(text)
+                named.add(text.source)
+        return kept
+
+    # ---------------------------------------------------------------- points
+
+    def _draw_marks(self, marks: Marks) -> None:
+        places = self._window.to_paper(marks.places)
+        west, south, east, north = _list_sides(self._window)
+        x, y = places[:, 0], places[:, 1]
+        is_seen = (
+            (x - _MARK >= west) & (x + _MARK <= east) & (y - _MARK >= south) & (y + _MARK <= north)
+        )
+        seen = np.flatnonzero(is_seen)
+        if len(seen) == 0:
+            return
+        arms = _MARK * np.array([[(-1, 0), (1, 0)], [(0, -1), (0, 1)]])
+        crosses = (places[seen, None, None, :] + arms).reshape(-1, 2, 2)
+        self._canvas.draw_paths(list(crosses), _MARK_PEN, "points")
+        self.drawn.kinds.add("point")
+        for number in seen[:_MOST_MARK_LABELS].tolist():
+            self.drawn.crowded += not self._write_mark(marks, number, places[number])
+        if marks.numbers or marks.elevations:
+            self.drawn.crowded += max(0, len(seen) - _MOST_MARK_LABELS)
+
+    def _write_mark(self, marks: Marks, number: int, place: Float64Array) -> bool:
+        """Write number and elevation beside a point, above and below, if there is room."""
+        texts = [
+            (written[number], side, name)
+            for written, side, name in (
+                (marks.numbers, 1.0, "point-number"),
+                (marks.elevations, -1.0, "point-elevation"),
+            )
+            if written and written[number]
+        ]
+        if not texts:
+            return True
+        height = _CAPITAL * _POINT_LETTERS + 0.3
+        width = max(measure_text(text, _POINT_LETTERS) for text, _, _ in texts)
+        low = min(0.0 if side > 0 else -height for _, side, _ in texts)
+        top = max(height if side > 0 else 0.0 for _, side, _ in texts)
+        x, y = float(place[0]) + _MARK + 0.2, float(place[1])
+        if not self._room.take(
+            outline_text((x + width / 2, y + (low + top) / 2), width, top - low)
+        ):
+            return False
+        for text, side, name in texts:
+            beside = y + 0.15 if side > 0 else y - height + 0.15
+            self._canvas.write((x, beside), text, size=_POINT_LETTERS, name=name)
+        return True
+
+    # ---------------------------------------------------------------- match lines
+
+    def _draw_match(self, match: MatchLine, number: int) -> None:
+        parts = clip_paths(
+            join_paths([self._window.to_paper(match.ends)]), self._window.frame
+        ).parts()
+        if not parts:
+            return
+        self._canvas.draw_paths(parts, MATCH_PEN, "match-lines")
+        self.drawn.kinds.add("match line")
+        start, end = parts[0][0], parts[0][-1]
+        text = f"Match line: sheet {number}"
+        width = measure_text(text, _LETTERS)
+        east, north = (end - start).tolist()
+        if math.hypot(east, north) < width + 2 * _MATCH_INSET:
+            return
+        rotation = turn_upright(math.degrees(math.atan2(north, east)))
+        high, low = (start, end) if start[1] >= end[1] else (end, start)
+        inward = (low - high) / np.hypot(*(low - high))
+        middle = high + (0.5 * width + _MATCH_INSET) * inward  # away from the surface in mid-frame
+        above = turn(np.array([0.0, 1.0]), rotation)
+        center = tuple((middle + (0.5 * _LETTERS + 0.5) * above).tolist())
+        self._room.take(outline_text(center, width, _LETTERS, rotation))
+        self._canvas.write(
+            tuple((middle + 0.7 * above).tolist()),
+            text,
+            size=_LETTERS,
+            color=MATCH_PEN.color,
+            rotation=rotation,
+            across="center",
+            name="match-label",
+        )
 
 
 def _list_sides(window: Window) -> tuple[float, float, float, float]:
@@ -129,88 +267,6 @@ def clip_to_window(paths: Paths, window: Window) -> Paths:
     """Return what a window shows of paths on the ground, on paper."""
     moved = Paths(window.to_paper(paths.coordinates), paths.offsets, paths.sources)
     return clip_paths(moved, window.frame)
-
-
-def _draw_paths(
-    canvas: Canvas, window: Window, paths: Paths, pen: Pen, kind: str, drawn: Drawn
-) -> None:
-    parts = clip_to_window(paths, window).parts()
-    if parts:
-        canvas.draw_paths(parts, pen, kind if kind == "outline" else f"{kind}-lines")
-        drawn.kinds.add(kind)
-
-
-def _fill_water(canvas: Canvas, window: Window, contents: Contents, drawn: Drawn) -> None:
-    shapely = optional.load("shapely")
-    box = shapely.box(*_list_sides(window))
-    for face in contents.footprint.faces[contents.footprint.is_water]:
-        moved = shapely.make_valid(shapely.transform(face, window.to_paper))
-        for part in shapely.get_parts(shapely.intersection(moved, box)):
-            if shapely.area(part) > 0:
-                rings = [shapely.get_coordinates(ring) for ring in shapely.get_rings(part)]
-                canvas.fill(rings, palette.WATER, "water")
-                drawn.kinds.add("water area")
-
-
-# ---------------------------------------------------------------- contours
-
-
-def _draw_contours(
-    canvas: Canvas, window: Window, contents: Contents, labeling: str, room: Room, drawn: Drawn
-) -> None:
-    lines = contents.contours
-    whole = Paths.whole(lines.coordinates[:, :2], lines.offsets[0])
-    seen = clip_to_window(whole, window)
-    is_index = lines.columns["is_index"]
-    texts: list[_Text] = []
-    if labeling != "none":
-        barriers = _list_barriers(window, contents)
-        texts = _choose_labels(_place_labels(seen, lines, labeling), barriers, room)
-    cut = _cut_out(seen, texts)
-    for flag, kind in ((False, "contour"), (True, "index contour")):
-        parts = cut.choose(is_index == flag)
-        if parts:
-            canvas.draw_paths(parts, CONTOUR_PENS[flag], f"{kind.replace(' ', '-')}s")
-            drawn.kinds.add(kind)
-    for text in texts:
-        canvas.write(
-            text.center,
-            text.text,
-            size=_LETTERS,
-            color=CONTOUR_PENS[True].color,
-            rotation=text.rotation,
-            across="center",
-            up="center_baseline",
-            name="contour-label",
-        )
-    drawn.labels += len(texts)
-
-
-def _list_barriers(window: Window, contents: Contents) -> Any:
-    """Return the lines that labels should not lie on, in a tree."""
-    shapely = optional.load("shapely")
-    parts = [
-        part
-        for paths in contents.linework.values()
-        for part in clip_to_window(paths, window).parts()
-    ]
-    return shapely.STRtree([shapely.LineString(part) for part in parts])
-
-
-def _choose_labels(texts: list[_Text], barriers: Any, room: Room) -> list[_Text]:
-    """Keep the labels that have room; one on a line only where its contour has no other."""
-    shapely = optional.load("shapely")
-    boxes = shapely.polygons(np.array([text.corners for text in texts]).reshape(-1, 4, 2))
-    hit = np.zeros(len(texts), np.bool_)
-    hit[barriers.query(boxes, predicate="intersects")[0]] = True
-    free = [text for text, is_hit in zip(texts, hit, strict=True) if not is_hit]
-    kept = [text for text in free if room.take(text.corners)]
-    named = {text.source for text in kept}
-    for text in (text for text, is_hit in zip(texts, hit, strict=True) if is_hit):
-        if text.source not in named and room.take(text.corners):
-            kept.append(text)
-            named.add(text.source)
-    return kept
 
 
 def _place_labels(seen: Paths, lines: Features, labeling: str) -> list[_Text]:
@@ -278,89 +334,6 @@ def _subtract(line: Any, boxes: AnyArray) -> list[Float64Array]:
     rest = shapely.difference(line, shapely.union_all(boxes))
     pieces = [shapely.get_coordinates(part) for part in shapely.get_parts(rest)]
     return [piece for piece in pieces if len(piece) > 1]
-
-
-# ---------------------------------------------------------------- points
-
-
-def _draw_marks(canvas: Canvas, window: Window, marks: Marks, room: Room, drawn: Drawn) -> None:
-    places = window.to_paper(marks.places)
-    west, south, east, north = _list_sides(window)
-    x, y = places[:, 0], places[:, 1]
-    is_seen = (
-        (x - _MARK >= west) & (x + _MARK <= east) & (y - _MARK >= south) & (y + _MARK <= north)
-    )
-    seen = np.flatnonzero(is_seen)
-    if len(seen) == 0:
-        return
-    arms = _MARK * np.array([[(-1, 0), (1, 0)], [(0, -1), (0, 1)]])
-    crosses = (places[seen, None, None, :] + arms).reshape(-1, 2, 2)
-    canvas.draw_paths(list(crosses), _MARK_PEN, "points")
-    drawn.kinds.add("point")
-    for number in seen[:_MOST_MARK_LABELS].tolist():
-        drawn.crowded += not _write_mark(canvas, marks, number, places[number], room)
-    if marks.numbers or marks.elevations:
-        drawn.crowded += max(0, len(seen) - _MOST_MARK_LABELS)
-
-
-def _write_mark(canvas: Canvas, marks: Marks, number: int, place: Float64Array, room: Room) -> bool:
-    """Write the number above and the elevation below on the right of a point, if there is room."""
-    texts = [
-        (written[number], side, name)
-        for written, side, name in (
-            (marks.numbers, 1.0, "point-number"),
-            (marks.elevations, -1.0, "point-elevation"),
-        )
-        if written and written[number]
-    ]
-    if not texts:
-        return True
-    height = _CAPITAL * _POINT_LETTERS + 0.3
-    width = max(measure_text(text, _POINT_LETTERS) for text, _, _ in texts)
-    low = min(0.0 if side > 0 else -height for _, side, _ in texts)
-    top = max(height if side > 0 else 0.0 for _, side, _ in texts)
-    x, y = float(place[0]) + _MARK + 0.2, float(place[1])
-    if not room.take(outline_text((x + width / 2, y + (low + top) / 2), width, top - low)):
-        return False
-    for text, side, name in texts:
-        beside = y + 0.15 if side > 0 else y - height + 0.15
-        canvas.write((x, beside), text, size=_POINT_LETTERS, name=name)
-    return True
-
-
-# ---------------------------------------------------------------- match lines
-
-
-def _draw_match(
-    canvas: Canvas, window: Window, match: MatchLine, number: int, room: Room, drawn: Drawn
-) -> None:
-    parts = clip_paths(join_paths([window.to_paper(match.ends)]), window.frame).parts()
-    if not parts:
-        return
-    canvas.draw_paths(parts, MATCH_PEN, "match-lines")
-    drawn.kinds.add("match line")
-    start, end = parts[0][0], parts[0][-1]
-    text = f"Match line: sheet {number}"
-    width = measure_text(text, _LETTERS)
-    east, north = (end - start).tolist()
-    if math.hypot(east, north) < width + 2 * _MATCH_INSET:
-        return
-    rotation = turn_upright(math.degrees(math.atan2(north, east)))
-    high, low = (start, end) if start[1] >= end[1] else (end, start)
-    inward = (low - high) / np.hypot(*(low - high))
-    middle = high + (0.5 * width + _MATCH_INSET) * inward  # away from the surface in mid-frame
-    above = turn(np.array([0.0, 1.0]), rotation)
-    center = tuple((middle + (0.5 * _LETTERS + 0.5) * above).tolist())
-    room.take(outline_text(center, width, _LETTERS, rotation))
-    canvas.write(
-        tuple((middle + 0.7 * above).tolist()),
-        text,
-        size=_LETTERS,
-        color=MATCH_PEN.color,
-        rotation=rotation,
-        across="center",
-        name="match-label",
-    )
 
 
 def turn_upright(rotation: float) -> float:

@@ -28,7 +28,7 @@ from .files import list_files, write_sheets
 from .footprint import find_footprint
 from .index_sheet import draw_index
 from .lettering import PURPOSE, clean_text, find_missing_letters
-from .mapping import draw_map
+from .mapping import Map
 from .papers import Paper, arrange_sheet
 from .scales import Scale, find_ground_unit, measure_scale_factor
 from .title_block import Caption, draw_title_block
@@ -221,14 +221,8 @@ class Plan:
             caption = caption._replace(title=f"{caption.title}: index of sheets")
             drawn = draw_index(canvas, sheet.window, self._contents, maps, grid=grid)
         else:
-            drawn = draw_map(
-                canvas,
-                sheet.window,
-                self._contents,
-                labeling=self._style.labels,
-                grid=grid,
-                numbers=tuple(maps),
-            )
+            drawing = Map(canvas, sheet.window, self._contents)
+            drawn = drawing.draw(labeling=self._style.labels, grid=grid, numbers=tuple(maps))
         kinds = [*drawn.kinds, *(["grid"] if grid != "none" else [])]
         has_room = draw_title_block(canvas, sheet.layout, sheet.window, caption, kinds)
         return canvas, drawn, has_room

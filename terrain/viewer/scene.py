@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import astuple, dataclass, replace
+from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -39,13 +40,13 @@ from .corridor import cut_into_strips, find_corridor, measure_mean_width
 from .overlay import Overlay
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterator
 
     from ...base.arrays import Float64Array
     from ...base.georeference.units import Ground
     from ...tin import TIN
     from .camera import View
-    from .corridor import Corridor, Strips
+    from .corridor import Strips
     from .legend import ElevationRange
     from .options import PreviewOptions
     from .ortho import Ortho
@@ -66,7 +67,7 @@ _LEAST_WIDTH = 2.0
 behind its own wall."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, eq=False)
 class Scene:
     """What is to be drawn, and how."""
 
@@ -76,7 +77,8 @@ class Scene:
     view: View
     shown: ElevationRange
     """Elevations that must be in the picture."""
-    title_block: TitleBlock
+    exaggeration: float
+    """Factor on heights."""
     has_block: bool
     strips: Strips | None
     """Pieces of a corridor."""
@@ -84,19 +86,31 @@ class Scene:
     """Picture draped over the surface."""
 
     @property
+    def points(self) -> Float64Array:
+        """The vertices as drawn."""
+        return place_vertices(self.tin, self.ground, self.exaggeration)
+
+    @property
     def elevations(self) -> tuple[float, float]:
         """Of the lowest and the highest tint."""
         return self.options.elevations or (self.shown.low, self.shown.high)
 
-    @property
-    def exaggeration(self) -> float:
-        """Factor on heights."""
-        return self.title_block.exaggeration
-
-    @property
-    def points(self) -> Float64Array:
-        """The vertices as drawn."""
-        return place_vertices(self.tin, self.ground, self.exaggeration)
+    @cached_property
+    def title_block(self) -> TitleBlock:
+        """What is written around it."""
+        options, ground = self.options, self.ground
+        is_covered = self.ortho is not None and self.ortho.gap == 0.0
+        legend = make_legend(options.tint, self.elevations, ground.elevation_caption)
+        return TitleBlock(
+            title=options.title,
+            subtitle="  \N{MIDDLE DOT}  ".join(_describe(self)),
+            exaggeration=self.exaggeration,
+            legend=None if is_covered else legend,
+            unit=ground.unit,
+            sun=options.sun,
+            warning=_warn(self),
+            palette=options.palette,
+        )
 
 
 def make_scene(
@@ -117,12 +131,9 @@ def make_scene(
         view = replace(view, azimuth=corridor.find_side(view.azimuth))
         if has_strips:
             factor, strips = _cut(tin, ground, options, view)
-    title_block = _make_title_block(tin, ground, options, shown, factor, corridor, strips)
-    if ortho is not None and ortho.gap == 0.0:
-        title_block = replace(title_block, legend=None)
     depth = BLOCK_SHARE * measure_extent(tin, ground)
     has_block = strips is None and measure_mean_width(tin, ground) >= _LEAST_WIDTH * depth
-    return Scene(tin, ground, options, view, shown, title_block, has_block, strips, ortho)
+    return Scene(tin, ground, options, view, shown, factor, has_block, strips, ortho)
 
 
 def _cut(
@@ -278,43 +289,24 @@ def fit_layout(window: tuple[int, int]) -> tuple[Layout, float]:
 # ----------------------------------------------------------------------- words
 
 
-def _make_title_block(
-    tin: TIN,
-    ground: Ground,
-    options: PreviewOptions,
-    shown: ElevationRange,
-    factor: float,
-    corridor: Corridor | None,
-    strips: Strips | None,
-) -> TitleBlock:
-    parts = [
-        f"{len(tin.points):,} points, {counted(len(tin.triangles), 'triangle')}",
-        ground.crs_name,
-    ]
-    if corridor is not None and strips is not None:
+def _describe(scene: Scene) -> Iterator[str]:
+    """Yield the parts of the subtitle."""
+    tin, ground, strips = scene.tin, scene.ground, scene.strips
+    yield f"{len(tin.points):,} points, {counted(len(tin.triangles), 'triangle')}"
+    yield ground.crs_name
+    if strips is not None:
         length = format_number(strips.length, step=1.0 if strips.length >= 100 else 0.01)
         unit = f" {ground.unit.symbol}" if ground.unit.symbol else ""
         strip = counted(len(strips.lows), "strip")
-        parts.append(f"{strip} of {length}{unit}, to read from left to right, then down")
-    ends = options.elevations or (shown.low, shown.high)
-    return TitleBlock(
-        title=options.title,
-        subtitle="  \N{MIDDLE DOT}  ".join(parts),
-        exaggeration=factor,
-        legend=make_legend(options.tint, ends, ground.elevation_caption),
-        unit=ground.unit,
-        sun=options.sun,
-        warning=_warn(tin, options, shown),
-        palette=options.palette,
-    )
+        yield f"{strip} of {length}{unit}, to read from left to right, then down"
 
 
-def _warn(tin: TIN, options: PreviewOptions, shown: ElevationRange) -> str:
+def _warn(scene: Scene) -> str:
     """Return what the tints leave out: elevations far off, or outside of what is asked for."""
-    if options.elevations is None:
-        return describe_far_off(tin, shown)
-    elevations = tin.points[:, 2]
-    low, high = options.elevations
+    if scene.options.elevations is None:
+        return describe_far_off(scene.tin, scene.shown)
+    elevations = scene.tin.points[:, 2]
+    low, high = scene.options.elevations
     count = int(((elevations < low) | (elevations > high)).sum())
     return f"{counted(count, 'elevation')} out of this range" if count else ""
 

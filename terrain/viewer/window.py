@@ -87,17 +87,11 @@ class Window:
 
     def set_exaggeration(self, factor: float) -> None:
         """Draw heights with another factor."""
-        scene = self.scene
-        options = replace(scene.options, exaggeration=factor)
-        title_block = replace(scene.title_block, exaggeration=factor)
-        self._rebuild(replace(scene, options=options, title_block=title_block))
+        self._rebuild(replace(self.scene, exaggeration=factor))
 
     def set_tint(self, tint: Tint) -> None:
         """Colour by elevation, slope or aspect, or not at all."""
-        options = replace(self.scene.options, tint=tint)
-        words = make_scene(self.scene.tin, options, self.scene.ortho, has_strips=False).title_block
-        title_block = replace(words, exaggeration=self.scene.exaggeration)
-        self._rebuild(replace(self.scene, options=options, title_block=title_block))
+        self._rebuild(replace(self.scene, options=replace(self.scene.options, tint=tint)))
 
     def set_contours(self, interval: float | None) -> None:
         """Draw contours at an interval, in the unit of elevations; None for none."""

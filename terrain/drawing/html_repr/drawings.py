@@ -8,16 +8,16 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..palette import interpolate_tints
+from .. import palette
+from ..palette import interpolate_tints, parse_hex
 from .frame import SIZE
 
 if TYPE_CHECKING:
     from ....base.arrays import Float64Array, UInt8Array
     from ....base.crs import CRS
+    from ..palette import Color
 
-_LINE = (38, 114, 181)
-"""A blue that stands out from white and from near black."""
-
+_INK = parse_hex(palette.THUMBNAIL)
 _MARGIN = 3
 _MOST_PIXELS = 4_000_000
 """Of all lines together; beyond it only every n-th segment is drawn."""
@@ -61,7 +61,7 @@ class Canvas:
 
     def draw_points(self, xy: Float64Array, values: Float64Array | None) -> None:
         """Draw places as dots, tinted from the lowest value to the highest, which is on top."""
-        colors = np.tile(np.array(_LINE, np.uint8), (len(xy), 1))
+        colors = np.tile(np.array(_INK, np.uint8), (len(xy), 1))
         if values is not None and len(values):
             order = np.argsort(values, kind="stable")
             xy, colors = xy[order], _find_tints(values[order])
@@ -74,9 +74,7 @@ class Canvas:
                 self.pixels[(*at, slice(0, 3))] = colors
                 self.pixels[(*at, 3)] = 255
 
-    def draw_segments(
-        self, start: Float64Array, stop: Float64Array, color: tuple[int, ...] = _LINE
-    ) -> None:
+    def draw_segments(self, start: Float64Array, stop: Float64Array, color: Color = _INK) -> None:
         """Draw straight segments, a pixel wide."""
         a, b = self._place(start), self._place(stop)
         steps = np.ceil(np.abs(b - a).max(axis=1, initial=0.0)).astype(np.intp) + 1

@@ -10,6 +10,8 @@ from ....base.checks import as_floats
 from ....base.georeference.axes import find_axes
 from ....base.sentences import counted
 from ....tin.report import word_reason
+from .. import palette
+from ..palette import parse_hex
 from .drawings import Canvas
 from .frame import describe_bounds, name_crs, name_units, write_html
 
@@ -28,7 +30,7 @@ _GIVEN = {
 }
 
 _EXPECTED = "header lines"
-_LINE = (196, 78, 38)
+_LINE = parse_hex(palette.THUMBNAIL_LINES)
 _MOST_NOTES = 5
 
 

@@ -16,7 +16,7 @@ from ....base.georeference.axes import label_axes
 from ....base.georeference.units import find_ellipsoid
 from ....base.sentences import counted
 from ...drawing import (
-    EDGE_KINDS,
+    LINE_STYLES,
     PAGE,
     SAMPLE_FRAME,
     choose_ramp,
@@ -29,7 +29,7 @@ from ...drawing import (
 from .packing import pack_counts, pack_rows, pack_triangles, sort_in_morton_order
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Iterator, Mapping, Sequence
 
     from ....base.arrays import Float64Array, Int64Array
     from ....base.georeference.units import Ground
@@ -48,15 +48,6 @@ _MOST_LABELS = 20_000
 _DECIMALS = 3
 _SHOWN_DIGITS = 2
 """Digits of a surface's span that are shown, where they are more than the decimals above."""
-
-
-_PENS: dict[str, tuple[str, str, bool, float]] = {
-    "soft": ("Soft breaklines", palette.LINES["soft"], True, 2.0),
-    "hard": ("Breaklines", palette.LINES["hard"], False, 2.0),
-    "hole": ("Holes", palette.LINES["hole"], False, 2.4),
-    "boundary": ("Boundary", palette.LINES["boundary"], False, 2.4),
-    "water": ("Water", palette.LINES["water"], False, 3.0),
-}
 
 
 class Labels(NamedTuple):
@@ -233,21 +224,11 @@ def _describe_surface(
     }
 
 
-def _describe_lines(tin: TIN, rows: Int64Array) -> list[dict[str, Any]]:
-    found = find_line_edges(tin)
-    layers = []
-    for rank, kind in enumerate(EDGE_KINDS):
-        pairs = found.pairs[found.kinds == rank]
-        if len(pairs) == 0:
-            continue
-        title, color, is_dashed, width = _PENS[kind]
+def _describe_lines(tin: TIN, rows: Int64Array) -> Iterator[dict[str, Any]]:
+    for kind, pairs in find_line_edges(tin).by_kind().items():
         vertices, counts = join_edges(pairs)
         lines = {"vertices": pack_rows(rows[vertices]), "counts": pack_counts(counts)}
-        layers.append(
-            {"kind": kind, "title": title, "color": color, "dashed": is_dashed, "width": width}
-            | {"lines": lines}
-        )
-    return layers
+        yield {"kind": kind, **LINE_STYLES[kind]._asdict(), "lines": lines}
 
 
 def _make_ramps() -> dict[str, list[str]]:
