@@ -3,12 +3,18 @@
 A line of JSON tells the seconds by the clock and of the processor, how far the memory rose above
 what the process held with its input, and how much was found. An AssertionError says that the answer
 is wrong.
+
+With ``--against PYTHON`` a product is run in turn by the interpreter of another installation, such
+as that of the commit before, and by this one; the line tells the best of each, and their ratios.
 """
 
 from __future__ import annotations
 
 import argparse
 import json
+import subprocess
+import sys
+import tempfile
 import time
 from collections.abc import Callable
 from functools import partial
@@ -107,6 +113,18 @@ def look_along_lines(tin: ts.TIN) -> ts.Features:
     return ts.line_of_sight(tin, tin.bounds.center, targets, eye_height=EYE_HEIGHT)
 
 
+def write_and_read(tin: ts.TIN) -> ts.TIN:
+    """Write a surface as a GeoPackage, and read it again."""
+    with tempfile.TemporaryDirectory() as folder:
+        return ts.read(write_whole(tin, Path(folder, "a.gpkg")))
+
+
+def write_whole(tin: ts.TIN, path: Path | None = None) -> Path:
+    """Write a surface as a GeoPackage."""
+    with tempfile.TemporaryDirectory() as folder:
+        return ts.write(tin, path or Path(folder, "a.gpkg"))
+
+
 # --------------------------------------------------------------------- what must hold
 
 
@@ -175,6 +193,12 @@ def _require_parts(tin: ts.TIN, found: ts.Features) -> str:
     return f"{100 * area['visible'] / tin.area:.1f} % seen"
 
 
+def _require_same(tin: ts.TIN, found: ts.TIN) -> str:
+    assert (found.points.view(np.int64) == tin.points.view(np.int64)).all()
+    assert (found.triangles == tin.triangles).all()
+    return f"{len(found.triangles):,} triangles"
+
+
 def _require_sights(tin: ts.TIN, found: ts.Features) -> str:
     chosen = np.random.default_rng(3).choice(len(tin.points), DROPS, replace=False)
     seen = ts.visible_vertices(tin, tin.bounds.center, eye_height=EYE_HEIGHT)[chosen]
@@ -211,6 +235,8 @@ PRODUCTS: dict[str, Product] = {
     "simplify": Product(make_hills, partial(ts.simplify, tolerance=0.5, threads=1), _require_near),
     "visible vertices": Product(make_hills, look_around, _require_seen_and_hidden),
     "viewshed": Product(make_hills, look_over, _require_parts),
+    "GeoPackage": Product(make_hills, write_whole, lambda _, path: path.suffix),
+    "GeoPackage, read again": Product(make_hills, write_and_read, _require_same),
     f"lines of sight, {DROPS:,}": Product(make_hills, look_along_lines, _require_sights),
 }
 """By name; hills have a point a square metre."""
@@ -248,12 +274,33 @@ def _read_status(name: str) -> int:
     return next(int(line.split()[1]) * 1024 for line in lines if line.startswith(name))
 
 
+def compare(name: str, count: int, other: str, rounds: int) -> dict[str, Any]:
+    """Run a product in two installations in turn; return the best of each, and ratios."""
+    command = ["-m", "benchmarks.products", name, str(count)]
+    runs: dict[str, list[dict[str, Any]]] = {other: [], sys.executable: []}
+    for _ in range(rounds):
+        for python, found in runs.items():
+            done = subprocess.run([python, *command], check=True, capture_output=True, text=True)
+            found.append(json.loads(done.stdout))
+    keys = [key for key in runs[other][0] if key != "found"]
+    base, change = (
+        {key: min(run[key] for run in found) for key in keys} for found in runs.values()
+    )
+    ratios = {key: base[key] / change[key] for key in keys}
+    return {"base": base, "change": change, "base / change": ratios}
+
+
 def main(arguments: list[str] | None = None) -> None:
     """Measure what the command line asks for."""
     parser = argparse.ArgumentParser(prog="python -m benchmarks.products", description=__doc__)
     parser.add_argument("name", choices=PRODUCTS)
     parser.add_argument("points", type=int, metavar="N")
+    parser.add_argument("--against", metavar="PYTHON")
+    parser.add_argument("--rounds", type=int, default=3)
     given = parser.parse_args(arguments)
+    if given.against:
+        print(json.dumps(compare(given.name, given.points, given.against, given.rounds)))
+        return
     print(json.dumps(measure(given.name, given.points)))
 
 

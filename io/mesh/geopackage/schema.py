@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
+    from collections.abc import Iterable
 
     from ....base.arrays import AnyArray, Float64Array
     from ....base.crs import CRS
@@ -25,13 +25,14 @@ RECORD = "tinsmith_tin"
 NO_CLOCK = "1970-01-01T00:00:00.000Z"
 """Time of the last change: the same TIN gives the same bytes."""
 
+_COMPACT_TRIANGLES = (
+    "a INTEGER NOT NULL, b INTEGER NOT NULL, c INTEGER NOT NULL, constrained INTEGER NOT NULL"
+)
+"""Columns of triangles as a table without polygons."""
+
 LAYERS = {
     "vertices": ("POINT", "vertex INTEGER NOT NULL"),
-    "triangles": (
-        "POLYGON",
-        "a INTEGER NOT NULL, b INTEGER NOT NULL, c INTEGER NOT NULL, "
-        "constrained INTEGER NOT NULL, slope REAL, aspect REAL",
-    ),
+    "triangles": ("POLYGON", f"{_COMPACT_TRIANGLES}, slope REAL, aspect REAL"),
     "lines": ("LINESTRING", "kind TEXT NOT NULL, name TEXT NOT NULL, source INTEGER NOT NULL"),
     "boundary": ("LINESTRING", "ring INTEGER NOT NULL"),
     "water": ("POLYGON", "name TEXT NOT NULL, elevation REAL NOT NULL"),
@@ -58,12 +59,19 @@ TABLES = (
     "CREATE TABLE gpkg_extensions (table_name TEXT, column_name TEXT, "
     "extension_name TEXT NOT NULL, definition TEXT NOT NULL, scope TEXT NOT NULL, "
     "CONSTRAINT ge_tce UNIQUE (table_name, column_name, extension_name))",
-    *(
+)
+
+
+def declare_layer(name: str, *, compact: bool) -> str:
+    """Return the statement that makes the table of a layer."""
+    geometry, columns = LAYERS[name]
+    if compact and name == "triangles":
+        return f"CREATE TABLE {name} (fid INTEGER PRIMARY KEY NOT NULL, {_COMPACT_TRIANGLES})"
+    return (
         f"CREATE TABLE {name} (fid INTEGER PRIMARY KEY NOT NULL, geom {geometry} NOT NULL, "
         f"{columns})"
-        for name, (geometry, columns) in LAYERS.items()
-    ),
-)
+    )
+
 
 _OWN_SRS = 100000
 """Number of a CRS that no authority has; GDAL takes the same."""
@@ -141,23 +149,24 @@ _TRIANGLE = np.dtype(
 _POINT_Z, _LINE_Z, _POLYGON_Z = 1001, 1002, 1003
 
 
-def make_point_blobs(points: Float64Array, srs: int) -> Iterator[memoryview]:
-    """Yield a point for each row of an (n, 3) array."""
+def make_points(points: Float64Array, srs: int) -> AnyArray:
+    """Return a point for each row of an (n, 3) array, as they lie in the file."""
     rows = _begin(np.zeros(len(points), POINT), _WITHOUT, srs, _POINT_Z)
     rows["xyz"] = points
-    return _cut(rows)
+    return rows
 
 
-def make_triangle_blobs(corners: Float64Array, srs: int) -> Iterator[memoryview]:
-    """Yield a closed ring of four vertices for each of the (m, 3, 3) corners."""
+def make_triangles(corners: Float64Array, srs: int) -> AnyArray:
+    """Return a closed ring of four vertices for each of the (m, 3, 3) corners."""
     rows = _begin(np.zeros(len(corners), _TRIANGLE), _WITH_ENVELOPE, srs, _POLYGON_Z)
     rows["rings"], rows["count"] = 1, 4
     rows["xyz"][:, :3] = corners
     rows["xyz"][:, 3] = corners[:, 0]
     for axis in (0, 1):
-        rows["bounds"][:, 2 * axis] = corners[:, :, axis].min(axis=1)
-        rows["bounds"][:, 2 * axis + 1] = corners[:, :, axis].max(axis=1)
-    return _cut(rows)
+        one, two, three = corners[:, :, axis].T
+        rows["bounds"][:, 2 * axis] = np.minimum(np.minimum(one, two), three)
+        rows["bounds"][:, 2 * axis + 1] = np.maximum(np.maximum(one, two), three)
+    return rows
 
 
 def make_chain_blobs(chains: list[Float64Array], srs: int, *, as_rings: bool) -> list[bytes]:
@@ -181,8 +190,3 @@ def _begin(rows: AnyArray, flags: int, srs: int, kind: int) -> AnyArray:
     rows["magic"], rows["flags"], rows["srs"] = b"GP", flags, srs
     rows["order"], rows["kind"] = 1, kind
     return rows
-
-
-def _cut(rows: AnyArray) -> Iterator[memoryview]:
-    content, size = memoryview(rows.tobytes()), rows.dtype.itemsize
-    return (content[start : start + size] for start in range(0, len(content), size))

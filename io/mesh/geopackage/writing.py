@@ -16,6 +16,7 @@ from ....base.sentences import FILE
 from ....terrain.relief.gradients import aspect, slope
 from ..common import format_unit, require_tin
 from .containers import Placing, adding_layers
+from .pages import Column, fill_table, make_blobs, make_integers, make_reals
 from .records import describe_layer_columns, pack_tin
 from .schema import (
     APPLICATION_ID,
@@ -24,15 +25,17 @@ from .schema import (
     RECORD,
     TABLES,
     USER_VERSION,
+    declare_layer,
     describe_crs,
     digest_arrays,
     digest_lines,
     make_chain_blobs,
-    make_point_blobs,
-    make_triangle_blobs,
+    make_points,
+    make_triangles,
 )
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
     from pathlib import Path
 
     from ....base.progress import Tell
@@ -46,7 +49,12 @@ _PAGE = 1 << 15
 
 
 def write(
-    surface: TIN, path: Path, *, overwrite: bool = False, progress: Tell | None = None
+    surface: TIN,
+    path: Path,
+    *,
+    overwrite: bool = False,
+    compact: bool = False,
+    progress: Tell | None = None,
 ) -> None:
     """Write all that a TIN is as a GeoPackage; :func:`read` gives it back, bit for bit.
 
@@ -54,6 +62,9 @@ def write(
     ----------
     overwrite : bool
         Replace layers of the names below that another program wrote or changed.
+    compact : bool
+        Write triangles as a table of vertex numbers, without polygons, slope and aspect: a quarter
+        of the size, and all of the TIN; other programs show its vertices and lines.
 
     Raises
     ------
@@ -71,47 +82,60 @@ def write(
     of a file that is there already stay as they are.
     """
     tin = require_tin(surface, format_name="a GeoPackage of a TIN")
+    tell = progress or (lambda _: None)
+    is_compact = as_flag("compact", compact)
     with adding_layers(path, Placing(overwrite=as_flag("overwrite", overwrite))) as beside:
         try:
             with closing(sqlite3.connect(beside, isolation_level=None)) as file:
-                _write_content(file, tin, progress or (lambda _: None))
+                srs = _write_content(file, tin, compact=is_compact)
+                roots = dict(file.execute("SELECT name, rootpage FROM sqlite_schema"))
+            with beside.open("r+b") as content:
+                if not tin.attributes:
+                    fill_table(content, roots["vertices"], _list_vertices(tin, srs))
+                tell(0.2)
+                rows = _list_numbers(tin) if is_compact else _list_triangles(tin, srs, tell)
+                fill_table(content, roots["triangles"], rows)
+                tell(1.0)
         except sqlite3.Error as error:
             raise WriteError(f"Cannot write {FILE}: {error}.") from error
 
 
-def _write_content(file: sqlite3.Connection, tin: TIN, progress: Tell) -> None:
+def _write_content(file: sqlite3.Connection, tin: TIN, *, compact: bool) -> int:
+    """Write all but the rows of large layers, and return the number of the CRS."""
     file.execute("PRAGMA journal_mode = OFF")  # the file takes its place when it is complete
     file.execute("PRAGMA synchronous = OFF")
     file.execute(f"PRAGMA page_size = {_PAGE}")
     file.execute(f"PRAGMA application_id = {APPLICATION_ID}")
     file.execute(f"PRAGMA user_version = {USER_VERSION}")
     file.execute("BEGIN")
-    for table in TABLES:
+    for table in (*TABLES, *(declare_layer(name, compact=compact) for name in LAYERS)):
         file.execute(table)
-    srs = _write_contents(file, tin)
+    srs = _write_contents(file, tin, compact=compact)
     _write_lines(file, tin, srs)
     _write_record(file, tin)
+    if tin.attributes:
+        _write_vertices_with_attributes(file, tin, srs)
+    file.execute("COMMIT")
+    return srs
+
+
+def _write_vertices_with_attributes(file: sqlite3.Connection, tin: TIN, srs: int) -> None:
     columns = describe_layer_columns(tin.attributes, ("fid", "geom", "vertex"))
     for declaration, _ in columns:
         file.execute(f"ALTER TABLE vertices ADD COLUMN {declaration}")
     values = [iter(column) for _, column in columns]
     marks = ", ".join("?" * (3 + len(columns)))
-    for start in range(0, len(tin.points), _CHUNK):
-        points = tin.points[start : start + _CHUNK]
-        numbers = range(start, start + len(points))
-        blobs = make_point_blobs(points, srs)
-        parts = [islice(column, len(points)) for column in values]
+    for part in _divide(len(tin.points)):
+        numbers = range(part.start, part.stop)
+        blobs = map(bytes, make_points(tin.points[part], srs))
+        parts = [islice(column, len(numbers)) for column in values]
         file.executemany(
             f"INSERT INTO vertices VALUES ({marks})",
-            zip(range(start + 1, start + len(points) + 1), blobs, numbers, *parts, strict=True),
+            zip((number + 1 for number in numbers), blobs, numbers, *parts, strict=True),
         )
-    progress(0.2)
-    _write_triangles(file, tin, srs, progress)
-    file.execute("COMMIT")
-    progress(1.0)
 
 
-def _write_contents(file: sqlite3.Connection, tin: TIN) -> int:
+def _write_contents(file: sqlite3.Connection, tin: TIN, *, compact: bool) -> int:
     """Write the tables that every GeoPackage has, and return the number of the CRS."""
     rows = describe_crs(tin.crs)
     srs = rows[-1][1]
@@ -120,6 +144,9 @@ def _write_contents(file: sqlite3.Connection, tin: TIN) -> int:
     unit = format_unit(tin) or "an unknown unit"
     box = tin.bounds
     for name, (geometry, _) in LAYERS.items():
+        if compact and name == "triangles":
+            _register_table(file, name, "Numbers of the vertices of each triangle.")
+            continue
         row = (name, "features", name, f"Elevations in {unit}.", NO_CLOCK)
         file.execute(
             "INSERT INTO gpkg_contents VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?)",
@@ -129,16 +156,20 @@ def _write_contents(file: sqlite3.Connection, tin: TIN) -> int:
             "INSERT INTO gpkg_geometry_columns VALUES (?, 'geom', ?, ?, 1, 0)",
             (name, geometry, srs),
         )
-    file.execute(
-        "INSERT INTO gpkg_contents (table_name, data_type, identifier, description, last_change) "
-        "VALUES (?, 'attributes', ?, 'What tinsmith knows of the TIN beside the layers.', ?)",
-        (RECORD, RECORD, NO_CLOCK),
-    )
+    _register_table(file, RECORD, "What tinsmith knows of the TIN beside the layers.")
     file.execute(
         "INSERT INTO gpkg_extensions VALUES ('gpkg_spatial_ref_sys', 'definition_12_063', "
         "'gpkg_crs_wkt', 'http://www.geopackage.org/spec/#extension_crs_wkt', 'read-write')"
     )
     return srs
+
+
+def _register_table(file: sqlite3.Connection, name: str, description: str) -> None:
+    file.execute(
+        "INSERT INTO gpkg_contents (table_name, data_type, identifier, description, last_change) "
+        "VALUES (?, 'attributes', ?, ?, ?)",
+        (name, name, description, NO_CLOCK),
+    )
 
 
 def _write_lines(file: sqlite3.Connection, tin: TIN, srs: int) -> None:
@@ -189,24 +220,38 @@ def _write_record(file: sqlite3.Connection, tin: TIN) -> None:
     file.executemany(f"INSERT INTO {RECORD} (name, type, shape, data) VALUES (?, ?, ?, ?)", rows)
 
 
-def _write_triangles(file: sqlite3.Connection, tin: TIN, srs: int, progress: Tell) -> None:
+def _divide(count: int) -> Iterator[slice]:
+    return (slice(start, min(start + _CHUNK, count)) for start in range(0, count, _CHUNK))
+
+
+def _list_vertices(tin: TIN, srs: int) -> Iterator[list[Column]]:
+    for part in _divide(len(tin.points)):
+        numbers = np.arange(part.start, part.stop)
+        yield [
+            make_blobs(make_points(tin.points[part], srs)),
+            make_integers(numbers, len(tin.points)),
+        ]
+
+
+def _list_numbers(tin: TIN) -> Iterator[list[Column]]:
+    """Yield the vertices of triangles, and which edges are constrained."""
+    flags = tin.constrained @ np.array([1, 2, 4], np.uint8)
+    for part in _divide(len(tin.triangles)):
+        columns = (make_integers(column, len(tin.points)) for column in tin.triangles[part].T)
+        yield [*columns, make_integers(flags[part], 7)]
+
+
+def _list_triangles(tin: TIN, srs: int, tell: Tell) -> Iterator[list[Column]]:
     try:
         slopes, aspects = slope(tin), aspect(tin)
     except CrsError:
         unknown = np.full(len(tin.triangles), np.nan)
         slopes, aspects = unknown, unknown
-    flags = tin.constrained @ np.array([1, 2, 4], np.uint8)
-    for start in range(0, len(tin.triangles), _CHUNK):
-        part = slice(start, start + _CHUNK)
-        corners = tin.triangles[part]
-        columns = [*corners.T, flags[part], slopes[part], aspects[part]]
-        file.executemany(
-            "INSERT INTO triangles VALUES (?, ?, ?, ?, ?, ?, ?, ?)",
-            zip(
-                range(start + 1, start + len(corners) + 1),
-                make_triangle_blobs(tin.points[corners], srs),
-                *(column.tolist() for column in columns),
-                strict=True,
-            ),
-        )
-        progress(0.2 + 0.8 * (start + len(corners)) / len(tin.triangles))
+    for part, numbers in zip(_divide(len(tin.triangles)), _list_numbers(tin), strict=True):
+        yield [
+            make_blobs(make_triangles(tin.points[tin.triangles[part]], srs)),
+            *numbers,
+            make_reals(slopes[part]),
+            make_reals(aspects[part]),
+        ]
+        tell(0.2 + 0.8 * part.stop / len(tin.triangles))

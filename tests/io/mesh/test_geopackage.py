@@ -122,6 +122,30 @@ def test_copies_of_what_was_read_are_edited_alike(path):
     assert len(found.edits) == 4
 
 
+@pytest.mark.parametrize("is_there", [False, True])
+def test_a_compact_file_holds_all_without_polygons(path, tmp_path, is_there):
+    tin = make_tin(crs=32616)
+    edit(tin)
+    whole = ts.write(tin, tmp_path / "whole.gpkg")
+    if is_there:  # the polygons of a file that is there go, a layer of another product stays
+        ts.write(ts.contours(tin, interval=20.0), path)
+        ts.write(make_tin(2, crs=32616), path)
+    found = ts.read(ts.write(tin, path, compact=True))
+    assert find_differences(tin, found) == []
+    found.undo(2)
+    tin.undo(2)
+    assert find_differences(tin, found) == []
+    with closing(sqlite3.connect(path)) as file:
+        assert file.execute("PRAGMA integrity_check").fetchall() == [("ok",)]
+        kinds = dict(file.execute("SELECT table_name, data_type FROM gpkg_contents"))
+        numbers = file.execute("SELECT * FROM triangles ORDER BY fid").fetchall()
+    assert kinds["triangles"] == "attributes"
+    assert ("contours" in kinds) == is_there
+    with closing(sqlite3.connect(whole)) as file:
+        query = "SELECT fid, a, b, c, constrained FROM triangles ORDER BY fid"
+        assert file.execute(query).fetchall() == numbers
+
+
 def test_the_same_tin_gives_the_same_bytes(tmp_path):
     for name in ("a.gpkg", "b.gpkg"):
         ts.write(make_tin(), tmp_path / name)
