@@ -88,19 +88,26 @@ def _make_cells(first: int, columns: list[Column], most: int) -> _Cells:
     """Return rows numbered from ``first``, the first column, each of ``most`` bytes at most."""
     numbers = np.arange(first, first + len(columns[0].kinds))
     kinds = [_pack_varints(column.kinds) for column in columns]
-    head = 2 + sum(sizes for _, sizes in kinds)  # its own length, and NULL for the number
+    head = 2 + _add_up(kinds)  # its own length, and NULL for the number
     if (head > 0x7F).any():
         raise ValueError(f"{len(columns)} columns are more than a header of 127 bytes holds")
     values = [
         (column.content, np.where(column.kinds == NULL, 0, column.content.shape[1]))
         for column in columns
     ]
-    payload = head + sum(sizes for _, sizes in values)
+    payload = head + _add_up(values)
     if (payload > most).any():
         raise ValueError(f"a row of {payload.max()} bytes is longer than a page holds")
     parts = [*map(_pack_varints, (payload, numbers, head, 0 * head)), *kinds, *values]
-    lengths: Int64Array = sum(sizes for _, sizes in parts)
-    return _Cells(numbers, np.cumsum(lengths), _join(parts))
+    return _Cells(numbers, np.cumsum(_add_up(parts)), _join(parts))
+
+
+def _add_up(parts: list[tuple[UInt8Array, Int64Array]]) -> Int64Array:
+    """Return the bytes of each row."""
+    total = np.zeros(len(parts[0][1]), np.int64)
+    for _, sizes in parts:
+        total += sizes
+    return total
 
 
 def _join(parts: list[tuple[UInt8Array, Int64Array]]) -> memoryview:
@@ -114,10 +121,10 @@ def _join(parts: list[tuple[UInt8Array, Int64Array]]) -> memoryview:
             if content.strides[0]:  # not the same in all rows
                 rows[:, start : start + content.shape[1]] = content
             start += content.shape[1]
-        return memoryview(rows.ravel())
+        return rows.ravel().data
     whole = np.hstack([content for content, _ in parts])
     used = np.hstack([np.arange(part.shape[1]) < sizes[:, None] for part, sizes in parts])
-    return memoryview(whole[used])
+    return whole[used].data
 
 
 def _pack_varints(values: Int64Array) -> tuple[UInt8Array, Int64Array]:
@@ -125,7 +132,9 @@ def _pack_varints(values: Int64Array) -> tuple[UInt8Array, Int64Array]:
     if len(values) > 1 and (values == values[0]).all():
         value, size = _pack_varints(values[:1])
         return np.broadcast_to(value, (len(values), value.shape[1])), np.repeat(size, len(values))
-    sizes = 1 + sum((values >> 7 * count > 0).astype(np.int64) for count in range(1, 5))
+    sizes = np.ones(len(values), np.int64)
+    for count in range(1, 5):
+        sizes += values >> 7 * count > 0
     bytes_of = np.empty((len(values), int(sizes.max())), np.uint8)
     for place in range(bytes_of.shape[1]):
         left = sizes - 1 - place
@@ -160,27 +169,18 @@ def fill_table(file: BinaryIO, root: int, parts: Iterable[list[Column]]) -> None
     count = int.from_bytes(header[_SIZE_AT], "big")
     one, other = (header[place] for place in _COUNTERS_AT)
     file.seek((root - 1) * page_size)
-    page = file.read(_LEAF_HEADER)
-    if one != other or file.seek(0, 2) != count * page_size or page[:5] != b"\x0d\0\0\0\0":
+    is_empty = file.read(5) == b"\x0d\0\0\0\0"
+    if one != other or file.seek(0, 2) != count * page_size or not is_empty:
         raise WriteError(f"Cannot write {FILE}: its table on page {root} is not empty.")
     leaves = _make_leaves(parts, page_size)
     begin = list(islice(leaves, 2))
+    if not begin:
+        return
+    top = begin[0].content
     if len(begin) == 2:
-        children = []
-        for leaf in chain(begin, leaves):
-            count = _append(file, leaf.content, count)
-            children.append(_Child(count, leaf.last))
-        while len(children) > (most := (page_size - _INTERIOR_HEADER) // _INTERIOR_CELL):
-            pages = np.array_split(np.arange(len(children)), len(children) // most + 1)
-            level = [[children[place] for place in page] for page in pages]
-            children = []
-            for below in level:
-                count = _append(file, _make_interior(below, page_size), count)
-                children.append(_Child(count, below[-1].last))
-        begin = [_Page(_make_interior(children, page_size), children[-1].last)]
-    for page in begin:
-        file.seek((root - 1) * page_size)
-        file.write(page.content)
+        top, count = _write_below(file, chain(begin, leaves), count)
+    file.seek((root - 1) * page_size)
+    file.write(top)
     file.seek(_SIZE_AT.start)
     file.write(count.to_bytes(4, "big"))
 
@@ -195,6 +195,24 @@ class _Child(NamedTuple):
     page: int
     last: int
     """Number of the last row on the page or below."""
+
+
+def _write_below(file: BinaryIO, leaves: Iterable[_Page], count: int) -> tuple[bytes, int]:
+    """Write all pages of a tree but the top; return that, and how many pages there are now."""
+    children = []
+    for leaf in leaves:
+        count = _append(file, leaf.content, count)
+        children.append(_Child(count, leaf.last))
+    page_size = len(leaf.content)
+    most = (page_size - _INTERIOR_HEADER) // _INTERIOR_CELL
+    while len(children) > most:
+        parts = np.array_split(np.arange(len(children)), len(children) // most + 1)
+        level = [[children[place] for place in part] for part in parts]
+        children = []
+        for below in level:
+            count = _append(file, _make_interior(below, page_size), count)
+            children.append(_Child(count, below[-1].last))
+    return _make_interior(children, page_size), count
 
 
 def _append(file: BinaryIO, content: bytes, count: int) -> int:
