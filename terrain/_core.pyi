@@ -47,6 +47,12 @@ class GriddedSurface:
         progress: Callable[[float], None] | None = ...,
     ) -> Float64Array: ...
 
+def number_components(neighbors: Int32Array) -> Int64Array: ...
+def double_areas(
+    points: Float64Array, triangles: Int32Array, threads: int = ...
+) -> Float64Array: ...
+def join_components(count: int, one: Int64Array, other: Int64Array) -> Int64Array: ...
+
 class ContourLines:
     coordinates: Final[Float64Array]
     offsets: Final[Int64Array]
@@ -217,6 +223,13 @@ def fit_quadratics(
     up: float,
     threads: int = ...,
 ) -> Float64Array: ...
+def complete_sides(
+    points: Float64Array,
+    counts: Int64Array,
+    corners: Int64Array,
+    lines: Int64Array,
+    line_count: int,
+) -> tuple[Int64Array, Int64Array, Int64Array]: ...
 def find_seen_parts(
     points: Float64Array,
     triangles: Int32Array,
@@ -311,10 +324,18 @@ class FallingSurface:
         self, offsets: Int64Array, starts: Float64Array, areas: Float64Array
     ) -> Float64Array: ...
     def link_strips(
-        self, offsets: Int64Array, starts: Float64Array, grounds: Int32Array
+        self,
+        offsets: Int64Array,
+        starts: Float64Array,
+        grounds: Int32Array,
+        threads: int = ...,
     ) -> tuple[Int32Array, Int32Array]: ...
     def link_vertices(
-        self, is_boundary: BoolArray, strip_count: int, grounds: Int32Array
+        self,
+        is_boundary: BoolArray,
+        strip_count: int,
+        grounds: Int32Array,
+        threads: int = ...,
     ) -> tuple[Int32Array, Int32Array, Int32Array]: ...
 
 def find_ends(nexts: Int32Array) -> Int32Array: ...

@@ -11,6 +11,9 @@ GriddedSurface = _core.GriddedSurface
 TILE_SIDE = _core.TILE_SIDE
 """Cells of a raster that are computed together lie in squares of so many rows and columns."""
 
+number_components = _core.number_components
+double_areas = _core.double_areas
+join_components = _core.join_components
 triangle_normals = _core.triangle_normals
 vertex_normals = _core.vertex_normals
 shade_planes = _core.shade_planes
@@ -20,6 +23,7 @@ densify = _core.densify
 simplify_cells = _core.simplify_cells
 measure_cells = _core.measure_cells
 find_seen_parts = _core.find_seen_parts
+complete_sides = _core.complete_sides
 find_seen_vertices = _core.find_seen_vertices
 
 FallingSurface = _core.FallingSurface

@@ -42,6 +42,7 @@ snap = _core.snap
 count_work = _core.count_work
 clean = _core.clean
 join_triangles = _core.join_triangles
+boundary_walks = _core.boundary_walks
 turns_of_triangles = _core.turns_of_triangles
 are_in_exact_range = _core.are_in_exact_range
 contacts = _core.contacts

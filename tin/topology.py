@@ -150,39 +150,7 @@ def boundary_walks(triangles: Int32Array, neighbors: Int32Array) -> tuple[Int64A
     offsets : (n_rings + 1,) int64 array
         Ring r is ``edges[offsets[r]:offsets[r + 1]]``.
     """
-    triangle, corner = np.nonzero(neighbors == NO_NEIGHBOR)
-    edge = 3 * triangle + corner
-    following = np.searchsorted(edge, _find_next_on_boundary(triangles, neighbors)).tolist()
-    is_left = [True] * len(following)
-    order: list[int] = []
-    offsets = [0]
-    for first in range(len(following)):
-        if not is_left[first]:
-            continue
-        here = first
-        while is_left[here]:
-            is_left[here] = False
-            order.append(here)
-            here = following[here]
-        offsets.append(len(order))
-    return edge[np.array(order, np.int64)], np.array(offsets, np.int64)
-
-
-def _find_next_on_boundary(triangles: Int32Array, neighbors: Int32Array) -> Int64Array:
-    """Return for every boundary edge the next one, both as 3 * triangle + corner.
-
-    It is found by turning about the end of the edge, through the triangles inside.
-    """
-    triangle, corner = np.nonzero(neighbors == NO_NEIGHBOR)
-    pivot = triangles[triangle, (corner + 2) % 3]
-    edge = (corner + 1) % 3
-    turning = np.arange(len(triangle))
-    while len(turning):
-        across = neighbors[triangle[turning], edge[turning]]
-        turning, across = turning[across != NO_NEIGHBOR], across[across != NO_NEIGHBOR]
-        here = np.argmax(triangles[across] == pivot[turning, None], axis=1)
-        triangle[turning], edge[turning] = across, (here + 2) % 3
-    return 3 * triangle + edge
+    return _kernel.boundary_walks(np.ascontiguousarray(triangles), np.ascontiguousarray(neighbors))
 
 
 # ---------------------------------------------------------------- by vertex

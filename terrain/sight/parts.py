@@ -6,9 +6,9 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from ...tin.topology import find_offsets
+from ...tin.validation import thread_count
 from .. import _kernel
-from ..surface import DividedMesh
+from ..surface import DividedMesh, sort_by
 
 if TYPE_CHECKING:
     from ...base.arrays import BoolArray, Float64Array, Int32Array, Int64Array, UInt8Array
@@ -39,27 +39,32 @@ def divide(tin: TIN, view: View) -> tuple[DividedMesh, BoolArray]:
     each side gets all that lie on it, so that the cells share their vertices, and then is joined
     with the middle of its cell.
     """
+    workers = thread_count(None, len(tin.points))
     found = _kernel.find_seen_parts(
-        tin.points, tin.triangles, tin.neighbors, view.eye, view.target_height
+        tin.points, tin.triangles, tin.neighbors, view.eye, view.target_height, workers
     )
     points, numbers = _number_corners(tin, found.corners)
     owners, counts = found.triangles.astype(np.int64), np.diff(found.offsets)
     cells = _Cells(owners, found.is_seen, counts, numbers, found.lines)
-    cells, parts = _join_thin(tin, cells, found.parts)
+    parts = found.parts
+    del found, owners, counts, numbers  # of all corners: what was used is let go
+    cells, parts = _join_thin(tin, cells, parts)
     cells = _choose(cells, cells.corners != cells.corners[_find_next(cells.counts)])
     cells, is_cut = _add_whole_triangles(tin, cells, parts)
     cells = _complete_sides(cells, points)
     kept = np.flatnonzero(~is_cut)
     points, fans, cell = _fan_out(cells, points)
     triangles = np.concatenate([tin.triangles[kept], fans])
-    mesh = DividedMesh.of(points, triangles, np.concatenate([kept, cells.owners[cell]]))
-    return mesh, np.concatenate([parts[kept] == _SEEN, cells.is_seen[cell]])
+    is_seen = np.concatenate([parts[kept] == _SEEN, cells.is_seen[cell]])
+    owners = np.concatenate([kept, cells.owners[cell]])
+    del cells, cell, fans, kept
+    return DividedMesh.of(points, triangles, owners), is_seen
 
 
 def _number_corners(tin: TIN, corners: Float64Array) -> tuple[Float64Array, Int64Array]:
     """Return the vertices of the TIN and all other corners once each, and the corners' numbers."""
     places = np.concatenate([tin.points[:, :2], corners])
-    order = np.lexsort((np.arange(len(places)), places[:, 1], places[:, 0]))
+    order = sort_by(*places.T)
     is_new = np.append(True, (np.diff(places[order], axis=0) != 0.0).any(axis=1))
     first = order[is_new]  # the vertex of the TIN, if it is one
     numbers = np.empty(len(places), np.int64)
@@ -73,10 +78,12 @@ def _number_corners(tin: TIN, corners: Float64Array) -> tuple[Float64Array, Int6
 
 def _join_thin(tin: TIN, cells: _Cells, parts: UInt8Array) -> tuple[_Cells, UInt8Array]:
     """Leave triangles whole that are thinner than coordinates can tell: seen if a part is."""
-    a, b, c = (tin.points[tin.triangles[:, k], :2] for k in range(3))
+    divided = np.flatnonzero(parts == _DIVIDED)
+    a, b, c = (tin.points[tin.triangles[divided, k], :2] for k in range(3))
     squares = [((q - p) ** 2).sum(axis=1) for p, q in ((a, b), (b, c), (c, a))]
-    areas = tin.triangulation.triangle_areas
-    is_thin = (areas <= _THINNEST * np.max(squares, axis=0)) & (parts == _DIVIDED)
+    areas = tin.triangulation.triangle_areas[divided]
+    is_thin = np.zeros(len(parts), np.bool_)
+    is_thin[divided] = areas <= _THINNEST * np.max(squares, axis=0)
     joined = parts.copy()
     joined[is_thin] = 0
     joined[cells.owners[is_thin[cells.owners] & cells.is_seen]] = _SEEN
@@ -129,57 +136,23 @@ def _add_whole_triangles(tin: TIN, cells: _Cells, parts: UInt8Array) -> tuple[_C
 
 def _complete_sides(cells: _Cells, points: Float64Array) -> _Cells:
     """Give each side the vertices of other cells that lie on it."""
-    start, end = cells.corners, cells.corners[_find_next(cells.counts)]
-    on_line = np.flatnonzero(cells.lines >= 0)
-    lines, n = cells.lines[on_line], len(points)
-    ends = np.stack([lines * n + start[on_line], lines * n + end[on_line]])
-    pairs, which = np.unique(ends, return_inverse=True)
-    vertices = pairs % n
-    order = _sort_along_lines(pairs // n, points[vertices], *which.reshape(2, -1))
-    ranks = np.empty(len(order), np.int64)
-    ranks[order] = np.arange(len(order))
-    first, last = np.zeros((2, len(start)), np.int64)
-    first[on_line], last[on_line] = ranks[which.reshape(2, -1)]
-    counts = np.maximum(np.abs(last - first), 1)
-    side = np.repeat(np.arange(len(start)), counts)
-    within = np.arange(len(side)) - find_offsets(counts)[side]
-    is_own = within == 0
-    at = first[side] + within * np.sign(last - first)[side]
-    corners = start[side]
-    corners[~is_own] = vertices[order][at[~is_own]]
-    owner = np.repeat(np.arange(len(cells.counts)), cells.counts)
-    total = np.bincount(owner, counts, len(cells.counts)).astype(np.int64)
-    return cells._replace(counts=total, corners=corners, lines=cells.lines[side])
-
-
-def _sort_along_lines(
-    lines: Int64Array,
-    places: Float64Array,
-    start: Int64Array,
-    end: Int64Array,
-) -> Int64Array:
-    """Sort places by their line, and along it, by the direction of its longest side."""
-    ways = places[end] - places[start]
-    by_length = np.argsort(np.hypot(*ways.T), kind="stable")
-    longest = np.zeros(len(lines), np.int64)
-    _, line = np.unique(lines, return_inverse=True)
-    longest[line[start[by_length]]] = by_length  # the last one stays
-    chosen = longest[line]
-    if len(lines) == 0:
-        return chosen
-    along = ((places - places[start[chosen]]) * ways[chosen]).sum(axis=1)
-    return np.lexsort((along, lines))
+    counts, corners, lines = _kernel.complete_sides(
+        points, cells.counts, cells.corners, cells.lines, int(cells.lines.max(initial=-1)) + 1
+    )
+    return cells._replace(counts=counts, corners=corners, lines=lines)
 
 
 def _fan_out(cells: _Cells, points: Float64Array) -> tuple[Float64Array, Int32Array, Int64Array]:
     """Return the points with the middles of cells, triangles, and the cell of each."""
     cell = np.repeat(np.arange(len(cells.counts)), cells.counts)
-    places = points[cells.corners]
-    origin = places[np.cumsum(cells.counts) - cells.counts]
+    origin = points[cells.corners[np.cumsum(cells.counts) - cells.counts]]
     sums = [
-        np.bincount(cell, (places - origin[cell])[:, axis], len(cells.counts)) for axis in (0, 1)
+        np.bincount(cell, points[cells.corners, axis] - origin[cell, axis], len(cells.counts))
+        for axis in (0, 1)
     ]
     middles = origin + np.column_stack(sums) / np.maximum(cells.counts, 1)[:, None]
-    following = cells.corners[_find_next(cells.counts)]
-    fans = np.column_stack([cells.corners, following, len(points) + cell])
-    return np.concatenate([points, middles]), fans.astype(np.int32), cell
+    fans = np.empty((len(cell), 3), np.int32)
+    fans[:, 0] = cells.corners
+    fans[:, 1] = cells.corners[_find_next(cells.counts)]
+    fans[:, 2] = len(points) + cell
+    return np.concatenate([points, middles]), fans, cell

@@ -156,11 +156,10 @@ def _as_features(
     ground = 0.5 * double_areas(mesh.points, mesh.triangles)
     inside = classes >= 0
     measured = np.bincount(classes[inside], ground[inside], len(_CLASSES))[found.classes]
-    pairs = np.unique(np.column_stack([classes, owners])[inside], axis=0)
-    counts = np.bincount(pairs[:, 0], minlength=len(_CLASSES))[found.classes]
+    counts = [np.count_nonzero(np.bincount(owners[classes == one])) for one in found.classes]
     columns = {
         "class": np.array(_CLASSES, object)[found.classes],
-        "triangles": counts,
+        "triangles": np.array(counts, np.int64),
         "area": measured,
         "share": 100.0 * measured / measured.sum(),
         "color": np.array(palette.SIGHT, object)[found.classes],

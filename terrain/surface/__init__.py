@@ -64,6 +64,7 @@ from .roundings import (
     multiply_exactly,
     take_without_slivers,
 )
+from .sorting import sort_by
 from .voids import find_border, find_surface, trace_cycles, trace_rings
 
 __all__ = [
@@ -121,6 +122,7 @@ __all__ = [
     "repair_polygons",
     "require_finite",
     "require_whole",
+    "sort_by",
     "sum_at_vertices",
     "sum_normals",
     "sum_parts",

@@ -8,6 +8,8 @@ import numpy as np
 
 from ...base.results import Features
 from ...tin.topology import NO_NEIGHBOR, boundary_walks, gather, neighbors_of
+from .. import _kernel
+from .sorting import sort_by
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -121,26 +123,14 @@ class _Rings(NamedTuple):
 
 
 def number_components(neighbors: Int32Array) -> Int64Array:
-    """Return the smallest triangle that each is connected to.
-
-    Roots hook onto the smallest root beside them, then every path is halved until it is one step
-    long (Shiloach and Vishkin 1982, doi:10.1016/0196-6774(82)90008-6).
-    """
-    triangle, corner = np.nonzero(neighbors > np.arange(len(neighbors))[:, None])  # each pair once
-    across = neighbors[triangle, corner].astype(np.int64)
-    return join_components(len(neighbors), triangle, across)
+    """Return the smallest triangle that each is connected to."""
+    return _kernel.number_components(neighbors)
 
 
 def join_components(count: int, one: Int64Array, other: Int64Array) -> Int64Array:
     """Return the smallest of so many numbers that each is connected to, by pairs of them."""
-    root = np.arange(count)
-    while len(one):
-        near, far = root[one], root[other]
-        np.minimum.at(root, np.maximum(near, far), np.minimum(near, far))
-        root = follow_to_end(root)
-        apart = root[one] != root[other]
-        one, other = one[apart], other[apart]
-    return root
+    pairs = (np.ascontiguousarray(numbers, np.int64) for numbers in (one, other))
+    return _kernel.join_components(count, *pairs)
 
 
 def follow_to_end(nexts: Int64Array) -> Int64Array:
@@ -219,7 +209,7 @@ def _sort_exteriors_first(rings: _Rings, classes: Int64Array, points: Float64Arr
     is_used[rings.vertices] = True
     used = np.flatnonzero(is_used)
     rank = np.empty(len(points), np.int64)
-    rank[used[np.lexsort((points[used, 1], points[used, 0]))]] = np.arange(len(used))
+    rank[used[sort_by(*points[used, :2].T)]] = np.arange(len(used))
     western = np.minimum.reduceat(rank[rings.vertices], rings.offsets[:-1])
     # Where a hole touches its exterior in the westernmost vertex, the exterior turns left.
     areas = _measure_ring_areas(points, rings)

@@ -74,10 +74,9 @@ def measure_areas(tin: TIN) -> Float64Array:
 
 def double_areas(points: Float64Array, triangles: Int32Array) -> Float64Array:
     """Return twice the signed area of triangles in the plane, (m,), each computed in doubles."""
-    a, b, c = (points[triangles[:, k], :2] for k in range(3))
-    (ux, uy), (vx, vy) = (b - a).T, (c - a).T
-    doubled: Float64Array = ux * vy - uy * vx
-    return doubled
+    workers = thread_count(None, len(triangles))
+    corners = np.ascontiguousarray(triangles, np.int32)
+    return _kernel.double_areas(np.ascontiguousarray(points), corners, workers)
 
 
 def measure_ring_area(crs: CRS | None, ring: Float64Array) -> float:

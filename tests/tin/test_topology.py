@@ -12,6 +12,7 @@ from tinsmith.tin import _kernel
 from tinsmith.tin.topology import (
     NO_NEIGHBOR,
     boundary_rings,
+    boundary_walks,
     edge_keys,
     edges,
     edges_at,
@@ -213,3 +214,40 @@ def test_turns_are_those_of_orientation(seed):
     corners = (np.ascontiguousarray(points[triangles[:, k], :2]) for k in range(3))
     wanted = _kernel.orientation(*corners)
     np.testing.assert_array_equal(_kernel.turns_of_triangles(points, triangles), wanted)
+
+
+def walk_by_turning(triangles, neighbors):
+    """Return the boundary edges ring by ring, each found by turning about the end of the last."""
+    rings, left = [], [(t, k) for t in range(len(triangles)) for k in range(3)]
+    left = [(t, k) for t, k in left if neighbors[t][k] == NO_NEIGHBOR]
+    while left:
+        ring, (t, k) = [], left[0]
+        while (t, k) in left:
+            left.remove((t, k))
+            ring.append(3 * t + k)
+            pivot, k = triangles[t][(k + 2) % 3], (k + 1) % 3
+            while neighbors[t][k] != NO_NEIGHBOR:
+                t = neighbors[t][k]
+                k = (triangles[t].index(pivot) + 2) % 3
+        rings.append(ring)
+    return rings
+
+
+@given(st.integers(3, 40), st.integers(0, 1000), st.randoms(use_true_random=False))
+def test_boundary_walks_turn_about_each_vertex(count, seed, random):
+    """Of what is left when triangles are taken out, where many rings touch."""
+    triangles = triangles_of(count, seed)
+    some = sorted(random.sample(range(len(triangles)), random.randint(1, len(triangles))))
+    part = triangles[some]
+    neighbors = neighbors_of(part, count)
+    edges_found, offsets = boundary_walks(part, neighbors)
+    rings = [ring.tolist() for ring in np.split(edges_found, offsets[1:-1])]
+    assert rings == walk_by_turning(part.tolist(), neighbors.tolist())
+
+
+def test_neighbors_that_are_not_mutual_are_refused():
+    triangles = np.array([[0, 1, 2], [2, 1, 3]], np.int32)
+    with pytest.raises(ValueError, match="neighbors of their neighbors"):
+        boundary_walks(triangles, np.array([[1, 1, -1], [1, 1, 1]], np.int32))
+    with pytest.raises(ValueError, match="triangles or -1"):
+        boundary_walks(triangles, np.array([[2, -1, -1], [-1, -1, -1]], np.int32))

@@ -2,13 +2,16 @@
 #pragma once
 
 #include <nanobind/nanobind.h>
+#include <nanobind/stl/tuple.h>
 
 #include <cstdint>
 #include <limits>
 #include <stdexcept>
+#include <tuple>
 #include <utility>
 
 #include "../../../tin/cpp/python/conversion.hpp"
+#include "../sight/cell_sides.hpp"
 #include "../sight/seen_parts.hpp"
 #include "../sight/seen_vertices.hpp"
 
@@ -77,6 +80,40 @@ inline SeenParts find_seen_parts(const GivenXyz& points, const GivenTriples& tri
           copy_over<Offsets, std::int64_t>(cells.lines, {cells.lines.size()})};
 }
 
+using GivenWholes = Given<std::int64_t, -1>;
+
+// Corners of each cell, and all corners and lines, with those of other cells on the sides.
+inline std::tuple<Offsets, Offsets, Offsets> complete_sides(const GivenXy& points,
+                                                            const GivenWholes& counts,
+                                                            const GivenWholes& corners,
+                                                            const GivenWholes& lines,
+                                                            std::int64_t line_count) {
+  const auto is_vertex = [&](std::int64_t v) {
+    return 0 <= v && v < static_cast<std::int64_t>(points.shape(0));
+  };
+  const auto is_line = [=](std::int64_t line) { return line < line_count; };
+  std::int64_t sum = 0;
+  for (std::size_t c = 0; c < counts.shape(0); ++c) {
+    const std::int64_t count = counts.data()[c];
+    if (count < 1 || count > INT32_MAX) throw std::invalid_argument("cells must have corners");
+    sum += count;
+  }
+  if (sum != static_cast<std::int64_t>(corners.shape(0)) || sum >= UINT32_MAX ||
+      lines.shape(0) != corners.shape(0) || !are_all(corners, is_vertex) ||
+      !are_all(lines, is_line)) {
+    throw std::invalid_argument("corners must be of points, with a line for each");
+  }
+  const sight::CellSides given{points_of(points), counts.data(),    counts.shape(0), corners.data(),
+                               lines.data(),      corners.shape(0), line_count};
+  const auto found = unlocked(1, [&](Team& team) {
+    Pulse pulse(team);
+    return sight::SideCompletion(given).run(pulse);
+  });
+  return {copy_over<Offsets, std::int64_t>(found.counts, {found.counts.size()}),
+          copy_over<Offsets, std::int64_t>(found.corners, {found.corners.size()}),
+          copy_over<Offsets, std::int64_t>(found.lines, {found.lines.size()})};
+}
+
 inline void bind_sight(nb::module_& m) {
   m.def("find_seen_vertices", &find_seen_vertices, "points"_a.noconvert(),
         "triangles"_a.noconvert(), "neighbors"_a.noconvert(), "wanted"_a.noconvert(),
@@ -85,6 +122,9 @@ inline void bind_sight(nb::module_& m) {
   m.def("find_seen_parts", &find_seen_parts, "points"_a.noconvert(), "triangles"_a.noconvert(),
         "neighbors"_a.noconvert(), "eye"_a.noconvert(), "target_height"_a, "threads"_a = 1,
         "Which triangles are seen, and cells of those that are divided.");
+  m.def("complete_sides", &complete_sides, "points"_a.noconvert(), "counts"_a.noconvert(),
+        "corners"_a.noconvert(), "lines"_a.noconvert(), "line_count"_a,
+        "Cells with the corners of others that lie on their sides: counts, corners and lines.");
   Result<SeenParts>(m, "SeenParts", "Triangles that are seen, hidden, or divided into cells.")
       .def_array("parts", &SeenParts::parts,
                  "(m,), of triangles: 0 hidden, 1 seen, 2 divided, 3 too thin.")

@@ -9,6 +9,7 @@
 #include "bind_raster_simplification.hpp"
 #include "bind_relief.hpp"
 #include "bind_sight.hpp"
+#include "bind_surface.hpp"
 
 NB_MODULE(_core, m) {
   nanobind::set_leak_warnings(false);  // daemon threads keep what they use at exit
@@ -22,4 +23,5 @@ NB_MODULE(_core, m) {
   bind_ground(m);
   bind_raster_simplification(m);
   bind_sight(m);
+  bind_surface(m);
 }

@@ -8,12 +8,14 @@
 // Sen, "An efficient output-sensitive hidden-surface removal algorithm", 1988).
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <stdexcept>
 #include <vector>
 
+#include "../../../tin/cpp/base/arrays.hpp"
 #include "../../../tin/cpp/base/ids.hpp"
 #include "../../../tin/cpp/base/parallel.hpp"
 #include "../../../tin/cpp/base/pulse.hpp"
@@ -301,9 +303,48 @@ class PartFinder {
   Cells* cells_ = nullptr;
 };
 
+// A surface with its vertices in the order of their directions: those that are looked at one after
+// the other lie near each other in memory.
+class SortedSurface {
+ public:
+  SortedSurface(const Surface& given, const Directions& directions)
+      : points_(scratch_array<double>(3 * static_cast<std::size_t>(given.point_count))),
+        corners_(scratch_array<std::int32_t>(std::size_t{3} * given.triangle_count)),
+        surface_(given) {
+    const auto count = static_cast<std::size_t>(given.point_count);
+    const auto numbers = scratch_array<std::int32_t>(count);
+    std::fill_n(numbers.get(), count, -1);
+    std::int32_t next = 0;
+    const auto take = [&](Vertex v) {
+      std::copy_n(given.row(v), 3, points_.get() + 3 * static_cast<std::size_t>(next));
+      numbers[number(v)] = next++;
+    };
+    for (std::int32_t at = 0; at < directions.size(); ++at) take(directions.vertex(at));
+    for (const Vertex v : Ids<Vertex>(given.point_count)) {
+      if (numbers[number(v)] < 0) take(v);
+    }
+    for (std::size_t i = 0; i < std::size_t{3} * given.triangle_count; ++i) {
+      corners_[i] = numbers[static_cast<std::size_t>(given.corners[i])];
+    }
+    surface_.points = points_.get();
+    surface_.corners = corners_.get();
+  }
+
+  const Surface& surface() const { return surface_; }
+
+ private:
+  ScratchArray<double> points_;
+  ScratchArray<std::int32_t> corners_;
+  Surface surface_;
+};
+
 // Check `team.is_stopped()` afterwards.
-inline void find_seen_parts(const Surface& surface, const View& view, Part* parts, Cells& cells,
+inline void find_seen_parts(const Surface& given, const View& view, Part* parts, Cells& cells,
                             Team& team) {
+  const auto of_given = sort_ends(given, view, team);
+  if (!of_given) return;
+  const SortedSurface sorted(given, *of_given);
+  const Surface& surface = sorted.surface();
   const auto directions = sort_ends(surface, view, team);
   if (!directions) return;
   const SightEdges edges(surface, view.eye.at, view.radius, *directions,

@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "../location/surface.hpp"
+#include "../mesh/boundary_walks.hpp"
 #include "../mesh/checked_mesh.hpp"
 #include "../mesh/mesh_arrays.hpp"
 #include "../mesh/regions.hpp"
@@ -152,6 +153,24 @@ inline auto join_triangles(const GivenTriples& triangles, std::int32_t vertex_co
                          is_sound);
 }
 
+// The boundary edges ring by ring, and where each ring begins.
+inline auto boundary_walks(const GivenTriples& triangles, const GivenTriples& neighbors) {
+  Surface surface = corners_of(triangles, kMostRows);
+  if (neighbors.shape(0) != triangles.shape(0)) {
+    throw std::invalid_argument("triangles and neighbors must have the same number of rows");
+  }
+  surface.neighbors = neighbors.data();
+  if (!surface.has_sound_neighbors()) {
+    throw std::invalid_argument("neighbors must be triangles or -1");
+  }
+  const BoundaryWalks found = [&] {
+    ReleasedLock release;
+    return BoundaryWalker(surface).walk();
+  }();
+  return std::make_tuple(copy_over<Offsets, std::int64_t>(found.edges, {found.edges.size()}),
+                         copy_over<Offsets, std::int64_t>(found.offsets, {found.offsets.size()}));
+}
+
 // Signs of the areas of triangles, seen from above.
 inline Signs turns_of_triangles(const GivenXyz& points, const GivenTriples& triangles) {
   const Surface surface = surface_of(points, triangles);
@@ -167,6 +186,8 @@ inline Signs turns_of_triangles(const GivenXyz& points, const GivenTriples& tria
 inline void bind_mesh(nb::module_& m) {
   m.def("join_triangles", &join_triangles, "triangles"_a.noconvert(), "vertex_count"_a,
         "The triangle across each edge, and whether the triangles fit together.");
+  m.def("boundary_walks", &boundary_walks, "triangles"_a.noconvert(), "neighbors"_a.noconvert(),
+        "The boundary edges, ring by ring, and where each ring begins.");
   m.def("turns_of_triangles", &turns_of_triangles, "points"_a.noconvert(),
         "triangles"_a.noconvert(), "+1 for a counter-clockwise triangle, -1 clockwise, 0 flat.");
   m.def("regions", &regions, "points"_a.noconvert(), "triangles"_a.noconvert(),
