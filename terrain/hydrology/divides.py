@@ -8,9 +8,10 @@ import numpy as np
 
 from ...tin import topology
 from .. import _kernel
-from ..surface import DividedMesh, fan_out
+from ..surface import DividedMesh, fan_out, sort_by
 from .descent import interpolate_edges
 from .strips import SAME, follow
+from .vertices import NOWHERE
 
 if TYPE_CHECKING:
     from ...base.arrays import Float64Array, Int32Array, Int64Array
@@ -51,13 +52,17 @@ def cut_at_divides(network: Network, labels: Int32Array, level: Int32Array) -> D
     rows = np.flatnonzero(labels[1:] != labels[:-1]) + 1
     owners = network.strips.find_triangles(rows)
     inner = offsets[owners] != rows
-    cuts = _place_cuts(network, rows[inner], owners[inner], labels)
+    rows, owners = rows[inner], owners[inner]
+    cuts = _place_cuts(network, rows, owners, labels)
+    del rows, owners, inner, sloping  # of all strips: what was used is let go
     is_cut = np.zeros(len(falls.triangles), np.bool_)
     is_cut[cuts.triangles] = is_cut[cuts.touched] = True
     made, regions = _cut_triangles(network, cuts, np.flatnonzero(is_cut), whole)
     triangles = np.concatenate([falls.triangles[~is_cut], made])
+    del made
     points = np.concatenate([falls.points[:, :2], cuts.places])
     patch_regions = np.append(whole[~is_cut], regions).astype(np.int64)
+    del cuts, regions, whole
     return DividedMesh.of(points, triangles, patch_regions)
 
 
@@ -84,7 +89,7 @@ def _place_cuts(
     share = np.where(start < end, share, 1.0 - share)
     low, high = np.minimum(start, end), np.maximum(start, end)
     free = np.flatnonzero(nodes < 0)
-    free = free[np.lexsort((share[free], (low * count + high)[free]))]
+    free = free[sort_by((low * count + high)[free], share[free])]
     keys = (low * count + high)[free]
     is_new = np.append(True, (np.diff(keys) != 0) | (np.diff(share[free]) > _NEAR))[: len(free)]
     nodes[free] = count - 1 + np.cumsum(is_new)
@@ -113,7 +118,10 @@ def _cut_triangles(
     turns = np.array([1, 2, 0]) + network.surface.bases_of(triangles).edges[:, None]
     corners = falls.triangles[triangles[:, None], turns % 3]  # start, end, apex
     keys = topology.edge_keys(corners[:, [[1, 2], [2, 0], [0, 1]]], count)[:, [2, 1, 0]]
-    ranges = np.stack([cuts.edges.searchsorted(keys, side) for side in ("left", "right")], axis=2)
+    begin = cuts.edges.searchsorted(keys)
+    end, has_places = begin.copy(), np.append(cuts.edges, NOWHERE)[begin] == keys
+    end[has_places] = cuts.edges.searchsorted(keys[has_places], "right")
+    ranges = np.stack([begin, end], axis=2)
     offsets = np.append(cuts.triangles.searchsorted(triangles), len(cuts.triangles))
     numbers, cells, vertices = _kernel.cut_cells(
         corners,

@@ -117,14 +117,18 @@ def catchments(
     numbers = np.full(len(network.nexts), NOWHERE, np.int32)
     numbers[named] = np.arange(len(named))
     labels, level = _label(network, numbers)
+    del numbers
     areas = _measure(network, labels, level, len(named))
     kept = np.flatnonzero(areas > 0.0) if outlets is None else np.arange(len(named))
     columns = _describe_catchments(tin, network, named[kept], kept, outlets is None)
     columns["area"] = areas[kept]
+    used = np.zeros(0, np.int32)
+    network = network._replace(nexts=used, uppers=used)  # of all strips: what was used is let go
     order = np.lexsort((kept, -areas[kept]))
     places = np.full(len(named) + 1, NOWHERE, np.int32)
     places[kept[order]] = np.arange(len(kept))
-    drawn = gather_polygons(cut_at_divides(network, places[labels], places[level]))
+    labels, level = places[labels], places[level]
+    drawn = gather_polygons(cut_at_divides(network, labels, level))
     done.end()
     return Features.of_polygons(
         drawn.points,

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from ...tin.topology import find_boundary_vertices
-from ..surface import follow_to_end
+from ..surface import follow_to_end, sort_by
 from .vertices import NOWHERE
 
 if TYPE_CHECKING:
@@ -83,7 +83,9 @@ def build_hierarchy(tin: TIN, rank: Int64Array | None = None) -> Hierarchy:
 def rank_vertices(points: Float64Array) -> Int64Array:
     """Return the place of each vertex in the order of elevations, no two the same."""
     rank = np.empty(len(points), np.int64)
-    rank[np.lexsort((points[:, 1], points[:, 0], points[:, 2]))] = np.arange(len(points))
+    x, y, z = points.T
+    order = np.argsort(y, kind="stable")
+    rank[order[sort_by(z[order], x[order])]] = np.arange(len(points))
     return rank
 
 

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from ...base.progress import Progress
+from ...tin.validation import thread_count
 from .. import _kernel
 from ..surface import double_areas, join_components
 from .descent import BOUNDARY, MOVING, Walker, make_drops
@@ -89,7 +90,8 @@ def build_network(
     z = tin.points[:, 2]
     level = tin.edges[z[tin.edges[:, 0]] == z[tin.edges[:, 1]]].astype(np.int64)
     grounds = join_components(len(z), level[:, 0], level[:, 1]).astype(np.int32)
-    nexts, uppers = surface.link_strips(*strips, grounds)
+    workers = thread_count(None, len(z))
+    nexts, uppers = surface.link_strips(*strips, grounds, workers)
     areas = np.abs(double_areas(tin.points, tin.triangles)) / 2
     found = Network(walker, surface, strips, grounds, nexts, uppers, areas)
     done(0.8)
@@ -127,7 +129,10 @@ def _read_falls(falls: Falls, filling: Filling | None) -> _kernel.FallingSurface
 def _link_vertices(found: Network) -> None:
     """Set what is below vertices; where doubles do not decide that, fractions do."""
     nexts, uppers, undecided = found.surface.link_vertices(
-        found.walker.is_boundary, found.first_vertex, found.grounds
+        found.walker.is_boundary,
+        found.first_vertex,
+        found.grounds,
+        thread_count(None, len(found.grounds)),
     )
     found.nexts[found.first_vertex : found.first_end] = nexts
     found.uppers[found.first_vertex :] = uppers

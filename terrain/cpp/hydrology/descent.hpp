@@ -12,7 +12,9 @@
 
 #include "../../../tin/cpp/base/arrays.hpp"
 #include "../../../tin/cpp/base/ids.hpp"
+#include "../../../tin/cpp/base/parallel.hpp"
 #include "../../../tin/cpp/base/pulse.hpp"
+#include "../../../tin/cpp/base/range.hpp"
 #include "falling_surface.hpp"
 #include "filling.hpp"
 #include "steepness.hpp"
@@ -124,21 +126,29 @@ class Descent {
 };
 
 // Which way water leaves vertices. Edges are compared exactly where doubles cannot tell; where a
-// triangle is as steep, nothing is chosen here. All triangles are read once, as they lie in memory.
+// triangle is as steep, nothing is chosen here. Triangles are read as they lie in memory, by each
+// thread all of them for its own vertices: so one order holds at every vertex.
 class ExitTable {
  public:
   // Ask the team whether it was stopped.
   ExitTable(const FallingSurface& falls, const Filling& filling, const bool* is_boundary,
-            Pulse& pulse)
+            Team& team)
       : falls_(falls),
         filling_(filling),
         is_boundary_(is_boundary),
         ways_(scratch_array<Ways>(falls.surface.point_count)) {
     std::fill_n(ways_.get(), falls.surface.point_count, Ways{});
-    for (const Triangle t : Ids<Triangle>(falls.surface.triangle_count)) {
-      if (!pulse.goes_on()) return;
-      for (std::uint32_t k = 0; k < 3; ++k) list_ways(half_edge(t, k));
-    }
+    team.run([&](int part) {
+      Pulse pulse(team, part);
+      const Range own = part_of(falls.surface.point_count, part, team.size());
+      for (const Triangle t : Ids<Triangle>(falls.surface.triangle_count)) {
+        if (!pulse.goes_on()) return;
+        for (std::uint32_t k = 0; k < 3; ++k) {
+          const std::int32_t v = number(falls.surface.vertex(t, k));
+          if (own.begin <= v && v < own.end) list_ways(half_edge(t, k));
+        }
+      }
+    });
   }
 
   // Nothing if undecided.

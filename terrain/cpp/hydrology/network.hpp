@@ -2,13 +2,16 @@
 #pragma once
 
 #include <algorithm>
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <vector>
 
 #include "../../../tin/cpp/base/arrays.hpp"
+#include "../../../tin/cpp/base/parallel.hpp"
 #include "../../../tin/cpp/base/pulse.hpp"
+#include "../../../tin/cpp/base/range.hpp"
 #include "descent.hpp"
 #include "strips.hpp"
 
@@ -55,15 +58,21 @@ class StripLinks {
         strips_(strips),
         nodes_(nodes) {}
 
-  void run(std::int32_t* nexts, std::int32_t* uppers, Pulse& pulse) const {
-    for (const Triangle t : Ids<Triangle>(falls_.surface.triangle_count)) {
-      for (std::int64_t i = strips_.begin(t); i < strips_.end(t); ++i) {
-        if (!pulse.goes_on()) return;
-        const Link found = find(t, (strips_.starts[i] + strips_.end_of(i, t)) / 2);
-        nexts[i] = found.next;
-        uppers[i] = found.upper;
+  // Each strip by itself, so that threads share them. Check `team.is_stopped()` afterwards.
+  void run(std::int32_t* nexts, std::int32_t* uppers, Team& team) const {
+    team.run([&](int part) {
+      Pulse pulse(team, part);
+      const Range range = part_of(falls_.surface.triangle_count, part, team.size());
+      for (std::int32_t triangle = range.begin; triangle < range.end; ++triangle) {
+        const Triangle t = triangle_numbered(triangle);
+        for (std::int64_t i = strips_.begin(t); i < strips_.end(t); ++i) {
+          if (!pulse.goes_on()) return;
+          const Link found = find(t, (strips_.starts[i] + strips_.end_of(i, t)) / 2);
+          nexts[i] = found.next;
+          uppers[i] = found.upper;
+        }
       }
-    }
+    });
   }
 
  private:
@@ -94,32 +103,38 @@ class VertexLinks {
       : falls_(falls), exits_(exits), descent_(falls, bases, filling), nodes_(nodes) {}
 
   // Returns the vertices that are undecided. They are visited in the order of the triangles, for
-  // paths that begin near each other cross the same ones.
-  std::vector<Vertex> run(std::int32_t* nexts, std::int32_t* uppers, Pulse& pulse) const {
-    std::fill_n(nexts, nodes_.vertex_count, kUnvisited);
-    for (const Triangle t : Ids<Triangle>(falls_.surface.triangle_count)) {
-      for (std::uint32_t k = 0; k < 3; ++k) {
-        visit(falls_.surface.vertex(t, k), nexts, uppers, pulse);
+  // paths that begin near each other cross the same ones: each by the thread that comes first, and
+  // with the same result by any. Check `team.is_stopped()` afterwards.
+  std::vector<Vertex> run(std::int32_t* nexts, std::int32_t* uppers, Team& team) const {
+    std::vector<std::atomic<bool>> is_visited(static_cast<std::size_t>(nodes_.vertex_count));
+    const auto visit = [&](Vertex v, Pulse& pulse) {
+      std::atomic<bool>& mine = is_visited[number(v)];
+      if (mine.load(std::memory_order_relaxed) || mine.exchange(true)) return;
+      const Link found = find(v, pulse).value_or(Link{kUndecided, -1});
+      nexts[number(v)] = found.next;
+      uppers[number(v)] = found.upper;
+    };
+    team.run([&](int part) {
+      Pulse pulse(team, part);
+      const Range range = part_of(falls_.surface.triangle_count, part, team.size());
+      for (std::int32_t t = range.begin; t < range.end && pulse.goes_on(); ++t) {
+        for (std::uint32_t k = 0; k < 3; ++k) {
+          visit(falls_.surface.vertex(triangle_numbered(t), k), pulse);
+        }
       }
-      if (!pulse.goes_on()) return {};
-    }
+    });
+    Pulse pulse(team);
     std::vector<Vertex> undecided;
     for (const Vertex v : Ids<Vertex>(nodes_.vertex_count)) {
-      visit(v, nexts, uppers, pulse);  // some are in no triangle
+      if (team.is_stopped()) return {};
+      visit(v, pulse);  // some are in no triangle
       if (nexts[number(v)] == kUndecided) undecided.push_back(v);
     }
     return undecided;
   }
 
  private:
-  static constexpr std::int32_t kUndecided = -1, kUnvisited = -2;
-
-  void visit(Vertex v, std::int32_t* nexts, std::int32_t* uppers, Pulse& pulse) const {
-    if (nexts[number(v)] != kUnvisited) return;
-    const Link found = find(v, pulse).value_or(Link{kUndecided, -1});
-    nexts[number(v)] = found.next;
-    uppers[number(v)] = found.upper;
-  }
+  static constexpr std::int32_t kUndecided = -1;
 
   std::optional<Link> find(Vertex v, Pulse& pulse) const {
     const std::optional<Exit> exit = exits_.find(v);

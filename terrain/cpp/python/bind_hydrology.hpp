@@ -127,16 +127,15 @@ class FallingSurface {
 
   // What is below all nodes, and the upper ends of channels, of strips; ends are below themselves.
   std::pair<Numbers, Numbers> link_strips(const GivenOffsets& offsets, const GivenValues& starts,
-                                          const GivenNumbers& grounds) const {
+                                          const GivenNumbers& grounds, int threads) const {
     const hydrology::Strips strips = strips_of(offsets, starts);
     const hydrology::Nodes nodes = nodes_of(starts.shape(0), grounds);
     const std::size_t count = nodes.count(), inner = nodes.first_vertex + nodes.vertex_count;
     auto nexts = streamed_array<std::int32_t>(count);
     auto uppers = streamed_array<std::int32_t>(inner);
-    run_unlocked(1, [&](Team& team) {
-      Pulse pulse(team);
+    run_unlocked(threads, [&](Team& team) {
       const hydrology::StripLinks links(falls_, bases_.data(), filling_, strips, nodes);
-      links.run(nexts.get(), uppers.get(), pulse);
+      links.run(nexts.get(), uppers.get(), team);
       for (std::size_t i = starts.shape(0); i < count; ++i) nexts[i] = static_cast<int>(i);
       std::fill(uppers.get() + starts.shape(0), uppers.get() + inner, -1);
     });
@@ -147,17 +146,17 @@ class FallingSurface {
   // The same of vertices, and those of them that doubles do not decide.
   std::tuple<Numbers, Numbers, Numbers> link_vertices(const GivenVertices& is_boundary,
                                                       std::size_t strip_count,
-                                                      const GivenNumbers& grounds) const {
+                                                      const GivenNumbers& grounds,
+                                                      int threads) const {
     const hydrology::Nodes nodes = nodes_of(strip_count, grounds);
     const std::size_t count = points_.shape(0);
     require(is_boundary.shape(0) == count, "there must be one flag for each vertex");
     auto nexts = streamed_array<std::int32_t>(count);
     auto uppers = streamed_array<std::int32_t>(count);
-    const auto undecided = unlocked(1, [&](Team& team) {
-      Pulse pulse(team);
-      const hydrology::ExitTable exits(falls_, filling_, is_boundary.data(), pulse);
+    const auto undecided = unlocked(threads, [&](Team& team) {
+      const hydrology::ExitTable exits(falls_, filling_, is_boundary.data(), team);
       const hydrology::VertexLinks links(falls_, bases_.data(), filling_, exits, nodes);
-      return links.run(nexts.get(), uppers.get(), pulse);
+      return links.run(nexts.get(), uppers.get(), team);
     });
     return {hand_over<Numbers>(std::move(nexts), {count}),
             hand_over<Numbers>(std::move(uppers), {count}), hand_over(undecided)};
@@ -316,10 +315,10 @@ It is the only edge that water leaves across, or else the only one that it enter
       .def("measure_strips", &FallingSurface::measure_strips, "offsets"_a.noconvert(),
            "starts"_a.noconvert(), "areas"_a.noconvert(), "Areas of strips.")
       .def("link_strips", &FallingSurface::link_strips, "offsets"_a.noconvert(),
-           "starts"_a.noconvert(), "grounds"_a.noconvert(),
+           "starts"_a.noconvert(), "grounds"_a.noconvert(), "threads"_a = 1,
            "Nodes below, and upper ends of channels, of strips; vertices are left to be linked.")
       .def("link_vertices", &FallingSurface::link_vertices, "is_boundary"_a.noconvert(),
-           "strip_count"_a, "grounds"_a.noconvert(),
+           "strip_count"_a, "grounds"_a.noconvert(), "threads"_a = 1,
            "Nodes below, and upper ends of channels, of vertices; -1 of those that are undecided, "
            "which come last.");
   m.def("find_ends", &find_ends, "nexts"_a.noconvert(),
