@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import re
 import sqlite3
 from contextlib import closing
@@ -13,10 +14,11 @@ import numpy as np
 
 from ....base.sentences import FILE
 from ...isolated import Answer, Refusal
-from .schema import POINT, RECORD, digest_lines
+from .page_reading import decode_integers, read_columns
+from .schema import POINT, RECORD, TRIANGLE, declare_layer, digest_arrays, digest_lines
 
 if TYPE_CHECKING:
-    from ....base.arrays import AnyArray, Float64Array
+    from ....base.arrays import AnyArray, BoolArray, Float64Array
 
 _TYPE = re.compile(r"[<|][bif][148]|\|u1")
 _SHAPE = re.compile(r"[0-9]{1,12}( [0-9]{1,12}){0,2}")
@@ -38,16 +40,16 @@ def read_tables(path: str) -> Answer:
             texts, arrays = _read_record(file)
             lines = file.execute("SELECT geom, kind, name FROM lines ORDER BY fid")
             rows = [row for row in lines if [type(one) for one in row] == [bytes, str, str]]
-            triangles = _read_triangles(file, size)
-            return Answer(
-                {**texts, "lines": digest_lines(rows)},
-                {
+            mesh = _read_as_written(path, file, texts["digests"])
+            if mesh is None:
+                triangles = _read_triangles(file, size)
+                mesh = {
                     "points": _read_points(file),
                     "triangles": triangles["corners"].copy(),
                     "flags": triangles["flags"].copy(),
-                    **{f" {name}": array for name, array in arrays.items()},
-                },
-            )
+                }
+            own = {f" {name}": array for name, array in arrays.items()}
+            return Answer({**texts, "lines": digest_lines(rows)}, mesh | own)
     except (sqlite3.Error, OverflowError, UnicodeError) as error:
         raise Refusal(f"{FILE} is a damaged GeoPackage ({error}).") from error
 
@@ -75,6 +77,47 @@ def _require_plain_tables(file: sqlite3.Connection) -> None:
     )
 
 
+def _read_as_written(
+    path: str, file: sqlite3.Connection, digests: str
+) -> dict[str, AnyArray] | None:
+    """Return points, triangles and flags by the pages that hold them, if no other wrote to these.
+
+    That they are what was written, their digest tells.
+    """
+    tables = {
+        name: (sql, root)
+        for name, sql, root in file.execute(
+            "SELECT name, sql, rootpage FROM sqlite_master WHERE name IN ('vertices', 'triangles')"
+        )
+    }
+    is_compact = tables["triangles"][0] == declare_layer("triangles", compact=True)
+    if any(sql != declare_layer(name, compact=is_compact) for name, (sql, _) in tables.items()):
+        return None
+    with Path(path).open("rb") as content:
+        vertices = read_columns(content, tables["vertices"][1], [POINT.itemsize])
+        polygons = [] if is_compact else [TRIANGLE.itemsize]
+        triangles = read_columns(
+            content, tables["triangles"][1], [*polygons, 0, 0, 0, 0], skip=len(polygons)
+        )
+    if vertices is None or triangles is None:
+        return None
+    rows = vertices[0].view(POINT).ravel()
+    if not _are_points(rows).all():
+        return None
+    points = np.ascontiguousarray(rows["xyz"])
+    a, b, c, flags = (decode_integers(column) for column in triangles)
+    corners = np.column_stack([a, b, c])
+    constrained = (flags[:, None] & np.array([1, 2, 4])) != 0
+    try:
+        stated = json.loads(digests)
+    except (ValueError, RecursionError):
+        return None
+    digest = digest_arrays(points, corners.astype(np.int32), constrained)
+    if not isinstance(stated, dict) or stated.get("mesh") != digest:
+        return None
+    return {"points": points, "triangles": corners, "flags": flags}
+
+
 def _read_points(file: sqlite3.Connection) -> Float64Array:
     blobs = []
     found = file.execute("SELECT vertex, geom FROM vertices ORDER BY vertex")
@@ -83,11 +126,16 @@ def _read_points(file: sqlite3.Connection) -> Float64Array:
             raise Refusal(f"layer 'vertices' has no point with z of number {count}.")
         blobs.append(blob)
     rows = np.frombuffer(b"".join(blobs), POINT)
-    is_point = (rows["magic"] == b"GP") & (rows["order"] == 1) & (rows["kind"] == 1001)
+    is_point = _are_points(rows)
     if not is_point.all():
         number = int(np.argmin(is_point))
         raise Refusal(f"layer 'vertices' has no point with z of number {number}.")
     return np.ascontiguousarray(rows["xyz"])
+
+
+def _are_points(rows: AnyArray) -> BoolArray:
+    found: BoolArray = (rows["magic"] == b"GP") & (rows["order"] == 1) & (rows["kind"] == 1001)
+    return found
 
 
 def _read_triangles(file: sqlite3.Connection, size: int) -> AnyArray:

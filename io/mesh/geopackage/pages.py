@@ -87,7 +87,7 @@ class _Cells(NamedTuple):
 def _make_cells(first: int, columns: list[Column], most: int) -> _Cells:
     """Return rows numbered from ``first``, the first column, each of ``most`` bytes at most."""
     numbers = np.arange(first, first + len(columns[0].kinds))
-    kinds = [_pack_varints(column.kinds) for column in columns]
+    kinds = [pack_varints(column.kinds) for column in columns]
     head = 2 + _add_up(kinds)  # its own length, and NULL for the number
     if (head > 0x7F).any():
         raise ValueError(f"{len(columns)} columns are more than a header of 127 bytes holds")
@@ -98,7 +98,7 @@ def _make_cells(first: int, columns: list[Column], most: int) -> _Cells:
     payload = head + _add_up(values)
     if (payload > most).any():
         raise ValueError(f"a row of {payload.max()} bytes is longer than a page holds")
-    parts = [*map(_pack_varints, (payload, numbers, head, 0 * head)), *kinds, *values]
+    parts = [*map(pack_varints, (payload, numbers, head, 0 * head)), *kinds, *values]
     return _Cells(numbers, np.cumsum(_add_up(parts)), _join(parts))
 
 
@@ -127,10 +127,10 @@ def _join(parts: list[tuple[UInt8Array, Int64Array]]) -> memoryview:
     return whole[used].data
 
 
-def _pack_varints(values: Int64Array) -> tuple[UInt8Array, Int64Array]:
+def pack_varints(values: Int64Array) -> tuple[UInt8Array, Int64Array]:
     """Return numbers below 2^35 in 7 bits a byte, the high ones first; and how many bytes each."""
     if len(values) > 1 and (values == values[0]).all():
-        value, size = _pack_varints(values[:1])
+        value, size = pack_varints(values[:1])
         return np.broadcast_to(value, (len(values), value.shape[1])), np.repeat(size, len(values))
     sizes = np.ones(len(values), np.int64)
     for count in range(1, 5):
@@ -244,7 +244,7 @@ def _make_leaves(parts: Iterable[list[Column]], page_size: int) -> Iterator[_Pag
 
 def _make_interior(children: list[_Child], page_size: int) -> bytes:
     """Return a page of cells (page, number of its last row), of all children but the last."""
-    varints, sizes = _pack_varints(np.array([child.last for child in children[:-1]]))
+    varints, sizes = pack_varints(np.array([child.last for child in children[:-1]]))
     cells = [
         child.page.to_bytes(4, "big") + varint[:size].tobytes()
         for child, varint, size in zip(children[:-1], varints, sizes, strict=True)

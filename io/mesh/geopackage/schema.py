@@ -143,9 +143,11 @@ _WITH_ENVELOPE, _WITHOUT = 0b011, 0b001  # the last bit: little-endian
 POINT = np.dtype([*_HEADER, *_KIND, ("xyz", "<f8", (3,))])
 """A point, as it lies in the file."""
 
-_TRIANGLE = np.dtype(
+TRIANGLE = np.dtype(
     [*_HEADER, *_ENVELOPE, *_KIND, ("rings", "<u4"), ("count", "<u4"), ("xyz", "<f8", (4, 3))]
 )
+"""A polygon of three sides, likewise."""
+
 _POINT_Z, _LINE_Z, _POLYGON_Z = 1001, 1002, 1003
 
 
@@ -158,7 +160,7 @@ def make_points(points: Float64Array, srs: int) -> AnyArray:
 
 def make_triangles(corners: Float64Array, srs: int) -> AnyArray:
     """Return a closed ring of four vertices for each of the (m, 3, 3) corners."""
-    rows = _begin(np.zeros(len(corners), _TRIANGLE), _WITH_ENVELOPE, srs, _POLYGON_Z)
+    rows = _begin(np.zeros(len(corners), TRIANGLE), _WITH_ENVELOPE, srs, _POLYGON_Z)
     rows["rings"], rows["count"] = 1, 4
     rows["xyz"][:, :3] = corners
     rows["xyz"][:, 3] = corners[:, 0]

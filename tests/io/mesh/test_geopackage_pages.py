@@ -9,6 +9,8 @@ import numpy as np
 import pytest
 
 import tinsmith as ts
+from tinsmith.io.mesh.geopackage import child
+from tinsmith.io.mesh.geopackage.page_reading import decode_integers, read_columns
 from tinsmith.io.mesh.geopackage.pages import (
     fill_table,
     make_blobs,
@@ -173,3 +175,99 @@ def test_level_triangles_have_no_aspect(tmp_path):
     expected = zip(ts.slope(tin).tolist(), ts.aspect(tin).tolist(), strict=True)
     assert found == [(slope, None if np.isnan(aspect) else aspect) for slope, aspect in expected]
     assert {aspect is None for _, aspect in found} == {True, False}
+
+
+# ------------------------------------------------------------------ read again
+
+
+@pytest.mark.parametrize("page_size", [512, 4096, 32768])
+@pytest.mark.parametrize("count", COUNTS)
+def test_rows_written_are_read_from_their_pages(tmp_path, count, page_size):
+    path = tmp_path / "a.db"
+    root = make_file(path, page_size)
+    blobs, integers, reals = make_rows(count)
+    fill(path, root, blobs, integers, reals, at_once=700)
+    with path.open("rb") as file:
+        found = read_columns(file, root, [21, 0])
+        alone = read_columns(file, root, [21, 0], skip=1)
+    assert found is not None
+    assert alone is not None
+    assert found[0].tobytes() == blobs.tobytes()
+    for column in (found[1], alone[0]):
+        assert decode_integers(column).tolist() == integers.tolist()
+
+
+def test_integers_of_one_to_four_bytes_keep_their_sign():
+    for width in (1, 2, 3, 4):
+        values = np.array([0, 1, -1, 2 ** (8 * width - 1) - 1, -(2 ** (8 * width - 1))])
+        content = values.astype(">i8").view(np.uint8).reshape(-1, 8)[:, 8 - width :]
+        assert decode_integers(content).tolist() == values.tolist()
+
+
+def change(path, statement):
+    with closing(sqlite3.connect(path)) as file, file:
+        file.execute(statement)
+
+
+@pytest.mark.parametrize(
+    "statement",
+    [
+        "DELETE FROM rows WHERE id = 300",
+        "UPDATE rows SET id = 70000 WHERE id = 300",
+        "UPDATE rows SET b = 1 WHERE id = 300",
+        "UPDATE rows SET b = NULL WHERE id = 300",
+        "UPDATE rows SET a = x'00' WHERE id = 300",
+        "DELETE FROM rows",
+    ],
+)
+def test_pages_that_another_program_changed_are_left_to_it(tmp_path, statement):
+    path = tmp_path / "a.db"
+    root = make_file(path)
+    fill(path, root, *make_rows(600))
+    change(path, statement)
+    with path.open("rb") as file:
+        assert read_columns(file, root, [21, 0]) is None
+
+
+def test_what_is_no_table_is_left_to_sqlite(tmp_path):
+    path = tmp_path / "a.db"
+    root = make_file(path, 512)
+    fill(path, root, *make_rows(5000))
+    whole = path.read_bytes()
+    with path.open("rb") as file:
+        for page in (0, 1, root + 1, 2**31):
+            assert read_columns(file, page, [21, 0]) is None
+        assert read_columns(file, root, [20, 0]) is None
+        assert read_columns(file, root, [21, 5]) is None
+    top = (root - 1) * 512
+    for place in range(top, top + 512, 3):  # a tree that leads anywhere, or round in a circle
+        for value in (0, root, 255):
+            path.write_bytes(whole[:place] + bytes([value]) + whole[place + 1 :])
+            with path.open("rb") as file:
+                found = read_columns(file, root, [21, 0])
+                assert found is None or len(found[0]) == len(found[1])
+
+
+@pytest.mark.parametrize("is_compact", [False, True])
+def test_a_tin_is_read_from_pages_as_sqlite_reads_it(tmp_path, is_compact):
+    points = np.random.default_rng(3).random((3000, 3)) * 1000
+    tin = ts.triangulate(points, breaklines=[[[1, 1, 5], [999, 999, 5]]])
+    path = ts.write(tin, tmp_path / "a.gpkg", compact=is_compact)
+    with closing(sqlite3.connect(path)) as file:
+        query = "SELECT data FROM tinsmith_tin WHERE name = 'digests'"
+        digests = file.execute(query).fetchone()[0].decode()
+        found = child._read_as_written(str(path), file, digests)
+        rows = child._read_triangles(file, path.stat().st_size)
+        assert found is not None
+        assert (found["points"] == child._read_points(file)).all()
+        assert (found["triangles"] == rows["corners"]).all()
+        assert (found["flags"] == rows["flags"]).all()
+        other = digests.replace('"mesh": "', '"mesh": "0')
+        assert child._read_as_written(str(path), file, other) is None
+        assert child._read_as_written(str(path), file, "[") is None
+    change(path, "UPDATE triangles SET a = b, b = a WHERE fid = 7")
+    with closing(sqlite3.connect(path)) as file:
+        assert child._read_as_written(str(path), file, digests) is None
+    change(path, "ALTER TABLE vertices ADD COLUMN more")
+    with closing(sqlite3.connect(path)) as file:
+        assert child._read_as_written(str(path), file, digests) is None
