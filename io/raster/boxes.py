@@ -26,6 +26,9 @@ if TYPE_CHECKING:
 
     from ...tin import Bounds
 
+_WIDEST_BLOCK = 4_096
+"""Cells side by side that are decompressed together, of a raster that is read by windows."""
+
 
 @taking(Choice)
 def describe(path: Path, choice: Choice) -> SourceHeader:
@@ -45,9 +48,19 @@ def describe(path: Path, choice: Choice) -> SourceHeader:
         bounds=find_bounds(low, high, plan.source, plan.target),
         crs=placed.crs,
         elevation_unit=placed.elevation_unit,
-        has_boxes=plan.stays,
+        obstacle=_find_obstacle(plan),
         notes=tuple(plan.said),
     )
+
+
+def _find_obstacle(plan: Plan) -> str:
+    """Return why the cells of a box are not read, or only with all others beside it."""
+    if not plan.stays:
+        return "would be reprojected"
+    width = min(plan.dataset.block_width, plan.dataset.width)
+    if width > _WIDEST_BLOCK:
+        return f"holds its cells in strips of {width:,}, and not in tiles (as a COG does)"
+    return ""
 
 
 @taking(Choice)

@@ -157,8 +157,9 @@ class SourceHeader:
     crs : CRS, optional
         The CRS that is wanted, else that of the file.
     elevation_unit : Unit, optional
-    has_boxes : bool
-        Whether :func:`tinsmith.io.streaming.read_box` reads it, with these options.
+    obstacle : str
+        Why :func:`tinsmith.io.streaming.read_box` does not read it with these options, or for a
+        box no less than for all of it; from "it" on: "has no octree". Empty if it does.
     records : str
         Version of the format, and format of its points, where there are several: "LAS 1.4, point
         format 6".
@@ -173,9 +174,14 @@ class SourceHeader:
     bounds: Bounds | None = None
     crs: CRS | None = None
     elevation_unit: Unit | None = None
-    has_boxes: bool = False
+    obstacle: str = "has no index of where its points lie"
     records: str = ""
     notes: tuple[str, ...] = ()
+
+    @property
+    def has_boxes(self) -> bool:
+        """Whether the points of a box are read without the others."""
+        return not self.obstacle
 
 
 def make_source_header(path: Path, name: str, **told: Any) -> SourceHeader:

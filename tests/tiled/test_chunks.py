@@ -7,8 +7,14 @@ import pytest
 from support.point_sets import KINDS
 
 import tinsmith as ts
-from tinsmith.tiled.chunks import Chunk, load_chunks, save_chunks, write_chunk
-from tinsmith.tiled.store import PointStore, count_by_cells, join_skeletons
+from tinsmith.tiled.chunks import Chunk, write_chunk
+from tinsmith.tiled.store import (
+    PointStore,
+    count_by_cells,
+    join_skeletons,
+    load_chunks,
+    save_chunks,
+)
 from tinsmith.tin.tiling.boxes import are_in_box
 from tinsmith.tin.tiling.circles import Discs
 from tinsmith.tin.tiling.skeleton import reduce_to_hull

@@ -49,6 +49,8 @@ if TYPE_CHECKING:
     from ..layers import Layer
 
 _CHILD = f"{__package__}.child"
+_MOST_OVERLAP = 4.0
+"""How often the groups of rows cover their bounds, of a file in which points have an order."""
 _LARGEST_WHOLE = 1 << 28
 """Bytes of a file that is read at once where it holds other features than single points."""
 
@@ -186,8 +188,21 @@ def describe(path: Path, asked: Asked) -> SourceHeader:
         bounds=None if corners is None else find_bounds(*corners, source, target),
         crs=placed.crs,
         elevation_unit=placed.elevation_unit,
-        has_boxes=stays(source, target) and bool(np.isfinite(boxes["boxes"]).all()),
+        obstacle=_find_obstacle(boxes["boxes"], stays=stays(source, target)),
     )
+
+
+def _find_obstacle(sides: Float64Array, *, stays: bool) -> str:
+    """Return why points cannot be read by box, or not without most others; (n, 4) sides."""
+    if not stays:
+        return "would be reprojected"
+    if not np.isfinite(sides).all():
+        return "tells no bounds of its groups of rows"
+    extents = sides[:, 2:] - sides[:, :2]
+    whole = sides[:, 2:].max(axis=0, initial=-np.inf) - sides[:, :2].min(axis=0, initial=np.inf)
+    if len(sides) and extents.prod(axis=1).sum() > _MOST_OVERLAP * whole.prod():
+        return "has groups of rows that overlap: its points have no order in space"
+    return ""
 
 
 @taking(Asked)

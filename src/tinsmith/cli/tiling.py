@@ -48,6 +48,7 @@ class Tiling:
     dask: str | None = None
     run: Path | None = None
     restart: bool | None = None
+    in_place: bool | None = None
     plan: bool | None = None
 
     @property
@@ -59,7 +60,8 @@ class Tiling:
     @property
     def way(self) -> dict[str, Any]:
         """Options of products of :class:`tinsmith.TiledPoints`."""
-        return {name: value for name, value in self.given.items() if name != "plan"}
+        others = ("plan", "in_place")
+        return {name: value for name, value in self.given.items() if name not in others}
 
 
 TILING = Group(
@@ -91,6 +93,13 @@ TILING = Group(
             "--restart/--resume",
             default=None,
             help="Begin anew, or go on with a run that was interrupted (the default).",
+        ),
+        click.option(
+            "--in-place",
+            is_flag=True,
+            default=None,
+            help="Read COPC, rasters in tiles and GeoParquet with bounds where they are, again and "
+            "again: next to no disk, mostly more time.",
         ),
         click.option(
             "--plan",
@@ -173,7 +182,7 @@ def take_points(job: Job, *files: Path) -> TiledPoints:
 
     given = {name: value for name, value in job.reading.given.items() if name != "remote"}
     method: Any = {"duplicates": job.building.duplicates, "crossing": job.building.crossing}
-    return tiles(files, **method, **given)
+    return tiles(files, in_place=bool(job.tiling.in_place), **method, **given)
 
 
 def _add_lines(cloud: TiledPoints, job: Job) -> TiledPoints:
@@ -220,7 +229,17 @@ def add_plan(facts: Facts, plan: Plan) -> None:
     facts.add("Workers", text, workers=plan.workers, worker_bytes=plan.memory)
     text = f"up to {plan.disk / 1e6:,.0f} MB while it runs"
     facts.add("Disk", text, disk_bytes=plan.disk)
+    if plan.in_place or plan.copied:
+        _add_places(facts, plan)
     facts.add("Time", f"about {plan.seconds:,.0f} s", seconds=plan.seconds)
+
+
+def _add_places(facts: Facts, plan: Plan) -> None:
+    """Add how many files are read in place, and why others are not."""
+    text = counted(plan.in_place, "file")
+    others = [f"{counted(count, 'file')} {why}" for why, count in plan.copied.items()]
+    text = f"{text}; copied: {'; '.join(others)}" if others else text
+    facts.add("Read in place", text, files_in_place=plan.in_place, files_copied=plan.copied)
 
 
 @contextmanager

@@ -4,6 +4,7 @@ A chunk is written once, by the task that read it, and never changed. Its points
 of the cells of a lattice over the chunk's own bounds, so that a box is read as few slices of a
 mapped file, whatever order the input had: one lidar tile gives compact chunks, a shuffled file
 chunks that each cover all of it with fewer points a cell. Nothing is merged or sorted afterwards.
+Points of files that are read in place have cells, too, see :mod:`.in_place`.
 """
 
 from __future__ import annotations
@@ -22,27 +23,19 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
     from pathlib import Path
 
-    from ..base.arrays import AnyArray, Float64Array, Int64Array
+    from ..base.arrays import AnyArray, BoolArray, Float64Array, Int64Array
 
 _POINT = np.dtype([("xyz", "<f8", 3), ("row", "<u4")])
 """A point on disk: its coordinates, and its row behind the first one of the chunk."""
 
 BYTES_ON_DISK = _POINT.itemsize
 
-_ENTRY = np.dtype(
-    [
-        ("file", "<u4"),
-        ("part", "<u4"),
-        ("first", "<i8"),
-        ("count", "<i8"),
-        ("box", "<f8", 4),
-        ("shape", "<u2", 2),
-    ]
-)
-"""A chunk in the list of all."""
+ROWS_OF_A_FILE = 2**40
+"""Numbers of rows are those in the file, and this times the number of the file."""
 
 _POINTS_OF_A_CELL = 1_000
 _CELLS_AT_A_TIME = 8
+_MOST_CELLS_AT_A_TIME = 1_024
 _MAPPED = 128
 """Files that are kept mapped: a process may have some hundred open."""
 _MOST_CELLS = 2**16 - 1
@@ -72,8 +65,9 @@ class Chunk:
     count : int
         Points in it.
     bounds : Bounds
+        Of its points.
     shape : tuple of int
-        Rows (from the south) and columns of the cells that divide the bounds.
+        Rows (from the south) and columns of the cells.
     """
 
     folder: Path
@@ -88,6 +82,16 @@ class Chunk:
     def path(self) -> Path:
         """Records of its points."""
         return self.folder / f"{self.file:06d}-{self.part:06d}.npy"
+
+    @property
+    def lattice(self) -> Bounds:
+        """What the cells divide; a point outside of it is in the nearest one."""
+        return self.bounds
+
+    @property
+    def firsts(self) -> Int64Array:
+        """Numbers, ascending, from each of which to the next there are not too many points."""
+        return np.array([self.first])
 
     @cached_property
     def offsets(self) -> Int64Array:
@@ -105,7 +109,7 @@ class Chunk:
 
     def locate(self, boxes: Float64Array) -> CellBlocks:
         """Return the cells that closed boxes meet; (k, 4), west, south, east, north."""
-        own, (rows, columns) = self.bounds, self.shape
+        own, (rows, columns) = self.lattice, self.shape
         return CellBlocks(
             *(_find_cells(boxes[:, k], own.ymin, own.ymax, rows) for k in (1, 3)),
             *(_find_cells(boxes[:, k], own.xmin, own.xmax, columns) for k in (0, 2)),
@@ -118,8 +122,27 @@ class Chunk:
         inner = sums[north + 1, east + 1] - sums[south, east + 1]
         return np.asarray(inner - sums[north + 1, west] + sums[south, west])
 
+    def list_parts(self) -> Iterator[Bounds]:
+        """Yield boxes that together hold all points, and each not too many."""
+        yield self.bounds
+
+    def read_boxes(self, boxes: Float64Array) -> NumberedPoints:
+        """Return the points of the cells that some closed boxes, (k, 4), meet, each once."""
+        return self.read(self.list_slices(self.locate(boxes)))
+
+    def read_near(self, center: Float64Array, radius: float) -> Iterator[NumberedPoints]:
+        """Yield the points of cells within a distance of a place, the nearest cells first."""
+        for cells in self._list_cells_near(center, radius, 1):
+            yield self.read([self._slice(cell, cell + 1) for cell in cells.tolist()])
+
     def list_slices(self, blocks: CellBlocks) -> list[slice]:
         """Return where the points of the cells of blocks lie, those of each cell once."""
+        edges = np.flatnonzero(np.diff(self._mark(blocks).view(np.int8), prepend=0, append=0))
+        ends = self.offsets[edges].reshape(-1, 2).tolist()
+        return [slice(start, stop) for start, stop in ends if start < stop]
+
+    def _mark(self, blocks: CellBlocks) -> BoolArray:
+        """Tell which cells are in any of some blocks, (rows * columns,) array."""
         rows, columns = self.shape
         south, north, west, east = (np.asarray(one, np.int64) for one in blocks)
         marks = np.zeros((rows + 1, columns + 1), np.int32)
@@ -130,18 +153,17 @@ class Chunk:
             (north + 1, east + 1, 1),
         ):
             np.add.at(marks, (row, column), step)
-        is_met = (marks.cumsum(axis=0).cumsum(axis=1) > 0)[:rows, :columns].ravel()
-        edges = np.flatnonzero(np.diff(is_met.astype(np.int8), prepend=0, append=0))
-        ends = self.offsets[edges].reshape(-1, 2).tolist()
-        return [slice(start, stop) for start, stop in ends if start < stop]
+        return (marks.cumsum(axis=0).cumsum(axis=1) > 0)[:rows, :columns].ravel()
 
-    def list_cells_near(self, center: Float64Array, radius: float) -> Iterator[list[slice]]:
-        """Yield where the points of some cells lie, those nearest to a place first."""
-        rows, columns = self.shape
+    def _list_cells_near(
+        self, center: Float64Array, radius: float, growth: int
+    ) -> Iterator[Int64Array]:
+        """Yield some filled cells at a time, ascending, and more each time if they grow."""
+        box, (rows, columns) = self.lattice, self.shape
         gaps = []
         for low, extent, count, value in (
-            (self.bounds.ymin, self.bounds.height, rows, center[1]),
-            (self.bounds.xmin, self.bounds.width, columns, center[0]),
+            (box.ymin, box.height, rows, center[1]),
+            (box.xmin, box.width, columns, center[0]),
         ):
             starts = low + np.arange(count) * (extent / count)
             slack = extent * 2.0**-20
@@ -150,9 +172,10 @@ class Chunk:
         distances = np.hypot(gaps[0][:, None], gaps[1]).ravel()
         near = np.flatnonzero((distances <= radius) & (np.diff(self.offsets) > 0))
         near = near[np.argsort(distances[near], kind="stable")]
-        for start in range(0, len(near), _CELLS_AT_A_TIME):
-            some = np.sort(near[start : start + _CELLS_AT_A_TIME]).tolist()
-            yield [self._slice(cell, cell + 1) for cell in some]
+        start, step = 0, _CELLS_AT_A_TIME
+        while start < len(near):
+            yield np.sort(near[start : start + step])
+            start, step = start + step, min(step * growth, _MOST_CELLS_AT_A_TIME)
 
     def _slice(self, start: int, stop: int) -> slice:
         return slice(int(self.offsets[start]), int(self.offsets[stop]))
@@ -181,26 +204,6 @@ def _map(path: Path, changed: int) -> AnyArray:
     return mapped
 
 
-def save_chunks(path: Path, chunks: list[Chunk]) -> None:
-    """Write what is known of chunks, so that tasks need not be handed it."""
-    entries = np.zeros(len(chunks), _ENTRY)
-    for entry, chunk in zip(entries, chunks, strict=True):
-        box = chunk.bounds
-        entry["file"], entry["part"] = chunk.file, chunk.part
-        entry["first"], entry["count"] = chunk.first, chunk.count
-        entry["box"] = box.xmin, box.ymin, box.xmax, box.ymax
-        entry["shape"] = chunk.shape
-    _save(path, entries)
-
-
-def load_chunks(path: Path, folder: Path) -> list[Chunk]:
-    """Read what :func:`save_chunks` wrote, of chunks in a folder."""
-    return [
-        Chunk(folder, file, part, first, count, Bounds(*box), (shape[0], shape[1]))
-        for file, part, first, count, box, shape in np.load(path).tolist()
-    ]
-
-
 def write_chunk(
     folder: Path, file: int, part: int, points: Float64Array, numbers: Int64Array
 ) -> Chunk:
@@ -220,7 +223,7 @@ def write_chunk(
     WriteError
     """
     bounds = Bounds.of(points)
-    rows, columns = _choose_shape(len(points), bounds)
+    rows, columns = choose_shape(len(points), bounds, _MOST_CELLS)
     cells = _find_cells(points[:, 1], bounds.ymin, bounds.ymax, rows) * np.uint16(columns)
     cells += _find_cells(points[:, 0], bounds.xmin, bounds.xmax, columns)
     offsets = np.zeros(rows * columns + 1, np.int64)
@@ -230,8 +233,8 @@ def write_chunk(
     records["xyz"] = points[order]
     records["row"] = (numbers - numbers[0])[order]
     chunk = Chunk(folder, file, part, int(numbers[0]), len(points), bounds, (rows, columns))
-    _save(chunk.path.with_suffix(".cells.npy"), offsets)
-    _save(chunk.path, records)
+    save_array(chunk.path.with_suffix(".cells.npy"), offsets)
+    save_array(chunk.path, records)
     return chunk
 
 
@@ -245,18 +248,31 @@ def split_numbers(points: NumberedPoints) -> list[NumberedPoints]:
     return parts
 
 
-def _save(path: Path, values: AnyArray) -> None:
+def save_array(path: Path, values: AnyArray) -> None:
+    """Write an array to a file of its own."""
     with replacing(path) as file:
         np.save(file, values)
 
 
-def _choose_shape(count: int, bounds: Bounds) -> tuple[int, int]:
-    """Return rows and columns of cells that are about square."""
-    wanted = min(_MOST_CELLS, max(1, count // _POINTS_OF_A_CELL))
+def choose_shape(count: int, bounds: Bounds, most: int) -> tuple[int, int]:
+    """Return rows and columns of cells that are about square, and at most so many.
+
+    There are less than 2^16 of either.
+    """
+    wanted = min(most, max(1, count // _POINTS_OF_A_CELL))
     if bounds.width == 0.0 or bounds.height == 0.0:
+        wanted = min(wanted, _MOST_CELLS)
         return (1, wanted) if bounds.width else (wanted, 1)
-    columns = min(max(1, round(float(np.sqrt(wanted * bounds.width / bounds.height)))), wanted)
-    return max(1, wanted // columns), columns
+    side = float(np.sqrt(wanted * bounds.width / bounds.height))
+    columns = min(max(1, round(side)), wanted, _MOST_CELLS)
+    return max(1, min(wanted // columns, _MOST_CELLS)), columns
+
+
+def find_cells(points: Float64Array, lattice: Bounds, shape: tuple[int, int]) -> Int64Array:
+    """Return the number of the cell of each point, row by row from the south-west."""
+    rows = _find_cells(points[:, 1], lattice.ymin, lattice.ymax, shape[0])
+    columns = _find_cells(points[:, 0], lattice.xmin, lattice.xmax, shape[1])
+    return rows.astype(np.int64) * shape[1] + columns
 
 
 def _find_cells(values: Float64Array, low: float, high: float, count: int) -> AnyArray:

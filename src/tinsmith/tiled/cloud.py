@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -35,6 +36,7 @@ from ..tin.validation import as_xy
 from .assembling import WRITERS, find_writable
 from .chunks import BYTES_ON_DISK
 from .computing import computing, labelling
+from .in_place import BYTES_HELD, find_obstacle
 from .lines import KINDS, GivenLines, as_files
 from .reading import join_bounds
 from .running import How, Way, estimate_memory
@@ -90,6 +92,10 @@ class Plan:
         Bytes in the folder of the run, at most.
     seconds : float
         About, on a usual processor.
+    in_place : int
+        Files that are read in place.
+    copied : dict of str to int
+        Why others are not, where that was asked for, and how many these are.
     """
 
     count: int
@@ -99,6 +105,8 @@ class Plan:
     memory: int
     disk: int
     seconds: float
+    in_place: int = 0
+    copied: Mapping[str, int] = field(default_factory=dict)
 
 
 def tiles(
@@ -113,6 +121,7 @@ def tiles(
     holes: Sequence[Any] | GeometriesLike = (),
     crossing: CrossingPolicy = "split",
     store: str | os.PathLike[str] | None = None,
+    in_place: bool = False,
     **options: Any,
 ) -> TiledPoints:
     """Take points in files as one surface, of which only tiles are in memory.
@@ -135,6 +144,10 @@ def tiles(
     store : path-like, optional
         Folder in which the points are kept for further products. Default they are read again for
         each.
+    in_place : bool
+        Read points again and again where they are, in files that have an index in space: COPC,
+        rasters in tiles, GeoParquet with bounds. Needs next to no disk, and mostly more time; the
+        result is the same. Other files are copied, as all are by default; ``plan`` tells which.
 
     Returns
     -------
@@ -184,6 +197,7 @@ def tiles(
         duplicates=duplicates,
         crossing=crossing,
         store=None if store is None else as_path(store, "store"),
+        in_place=as_flag("in_place", in_place),
         options=read | _choose_attributes(headers, wanted, read),
     )
     return cloud._take_lines(breaklines=breaklines, boundary=boundary, holes=holes)
@@ -231,6 +245,8 @@ class TiledPoints:
         What becomes of lines that cross.
     lines : GivenLines or None
         Lines that are edges of the surface, and rings that cut it.
+    in_place : bool
+        Whether files that have an index in space are read where they are.
 
     Examples
     --------
@@ -251,6 +267,7 @@ class TiledPoints:
     candidates: GroundReturns | None = None
     crossing: CrossingPolicy = "split"
     lines: GivenLines | None = None
+    in_place: bool = False
 
     @property
     def files(self) -> tuple[Path, ...]:
@@ -288,10 +305,22 @@ class TiledPoints:
     @property
     def count_about(self) -> int:
         """Points, as the headers name them, or by the size of files that do not tell."""
-        return sum(
-            header.size // _BYTES_OF_A_POINT if header.count is None else header.count
-            for header in self.headers
-        )
+        return sum(map(_count_about, self.headers))
+
+    @property
+    def obstacles(self) -> tuple[str, ...]:
+        """Of each file why it is not read in place, empty where it is."""
+        if not self.in_place:
+            return ("is copied, as all are by default",) * len(self.headers)
+        return tuple(map(find_obstacle, self.headers))
+
+    @property
+    def places(self) -> list[tuple[Bounds, int] | None]:
+        """Of each file that is read in place its bounds and points, as its header tells."""
+        return [
+            None if why or one.bounds is None or one.count is None else (one.bounds, one.count)
+            for one, why in zip(self.headers, self.obstacles, strict=True)
+        ]
 
     def with_lines(
         self,
@@ -394,15 +423,19 @@ class TiledPoints:
         1
         """
         how = How.of(**way)
-        count = self.count_about
+        count, obstacles = self.count_about, self.obstacles
+        copied = [header for header, why in zip(self.headers, obstacles, strict=True) if why]
+        in_place = len(self.headers) - len(copied)
         return Plan(
             count=count,
             tiles=max(how.tiles, -(-count // how.tile_points)),
             tile_points=how.tile_points,
             workers=how.workers,
-            memory=estimate_memory(min(count, how.tile_points)),
-            disk=count * BYTES_ON_DISK,
+            memory=estimate_memory(min(count, how.tile_points)) + (BYTES_HELD if in_place else 0),
+            disk=sum(map(_count_about, copied)) * BYTES_ON_DISK,
             seconds=count / _POINTS_PER_SECOND / how.workers,
+            in_place=in_place,
+            copied=dict(Counter(filter(None, obstacles))) if self.in_place else {},
         )
 
     def __repr__(self) -> str:
@@ -1284,6 +1317,10 @@ class TiledPoints:
         ):
             made.write(folder)
         return output
+
+
+def _count_about(header: SourceHeader) -> int:
+    return header.size // _BYTES_OF_A_POINT if header.count is None else header.count
 
 
 def _list_files(paths: Any, name: str | None) -> list[Path]:

@@ -233,6 +233,7 @@ def _reading(cloud: TiledPoints, folder: Path, phase: Phase, how: How) -> Iterat
             run,
             sources,
             phase,
+            cloud.places,
             options=cloud.options,
             where=cloud.where,
             candidates=cloud.candidates,
@@ -247,6 +248,8 @@ def _describe(
     reading = {"duplicates": cloud.duplicates, "where": dict(cloud.where), **cloud.options}
     if cloud.candidates is not None:
         reading["candidates"] = cloud.candidates
+    if cloud.in_place:
+        reading["in_place"] = True
     return {
         "version": __version__,
         "product": product,

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..base.atomic import replacing
-from .chunks import Chunk, load_chunks, save_chunks, write_chunk
-from .store import NO_POINTS, PointStore
+from .chunks import Chunk, write_chunk
+from .store import NO_POINTS, PointStore, load_chunks, save_chunks
 
 if TYPE_CHECKING:
     from pathlib import Path

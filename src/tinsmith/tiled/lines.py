@@ -34,6 +34,7 @@ from ..tin.tiling import (
     choose_near,
     find_outline,
     find_rim,
+    intersect,
     list_segments_near,
     node_base,
     node_laid,
@@ -41,9 +42,10 @@ from ..tin.tiling import (
     require_local,
     widen,
 )
-from .chunks import load_chunks
-from .reading import ROWS_OF_A_FILE, StoredPoints, load_points, name_rows, save_points
+from .chunks import ROWS_OF_A_FILE
+from .reading import StoredPoints, load_points, name_rows, save_points
 from .running import Fingerprint, Record, Run, hash_file
+from .store import load_chunks
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -261,11 +263,11 @@ def _list_near(job: NearJob, lines: LineSet) -> Iterator[NumberedPoints]:
     index = job.points / f"{job.key}.chunks.npy"
     for chunk in load_chunks(index, job.points) if index.exists() else ():
         reach = _MARGIN * float(np.abs([*_list_limits(chunk.bounds)]).max())
-        ends = list_segments_near(lines, widen(chunk.bounds, reach)).reshape(-1, 2)
-        if len(ends):
-            box = widen(Bounds.of(ends), reach)
-            cells = chunk.locate(np.array([_list_limits(box)]))
-            yield choose_near(chunk.read(chunk.list_slices(cells)), lines)
+        for part in chunk.list_parts():
+            ends = list_segments_near(lines, widen(part, reach)).reshape(-1, 2)
+            if len(ends):
+                box = intersect(widen(Bounds.of(ends), reach), widen(part, reach))
+                yield choose_near(chunk.read_boxes(np.array([_list_limits(box)])), lines)
 
 
 def _list_limits(box: Bounds) -> tuple[float, float, float, float]:

@@ -14,7 +14,7 @@ import numpy as np
 
 from ..base.atomic import replacing
 from ..base.crs import CRS, Unit
-from ..base.errors import CrsError, OptionError, ReadError, TinsmithError, WriteError
+from ..base.errors import CrsError, ReadError, TinsmithError, WriteError
 from ..base.notes import join_alike, join_notes
 from ..base.sentences import counted
 from ..base.types import Bounds
@@ -23,24 +23,22 @@ from ..io.streaming import stream_points
 from ..terrain.ground_filter import Candidates
 from ..tin.report import describe_differing, describe_skipped
 from ..tin.tiling import NumberedPoints, find_skeleton
-from .chunks import Chunk, load_chunks, save_chunks, split_numbers, write_chunk
+from .chunks import ROWS_OF_A_FILE, Chunk, split_numbers, write_chunk
+from .in_place import Choice, Counting
 from .running import Fingerprint, Record, Run, hash_file
-from .store import PointStore, join_skeletons
+from .store import PointStore, join_skeletons, load_chunks, save_chunks
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
-    from ..base.arrays import AnyArray, BoolArray, Float64Array
-    from ..base.policies import DuplicatePolicy, GroundReturns
+    from ..base.arrays import Float64Array
+    from ..base.policies import DuplicatePolicy
     from ..io.registry import StreamEnd
     from ..io.streaming import PointStream
     from .running import Phase
 
 CHUNK_POINTS = 1_000_000
 """Points that are held at a time while a file is read."""
-
-ROWS_OF_A_FILE = 2**40
-"""Numbers of rows are those in the file, and this times the number of the file."""
 
 _PHASE = "inputs"
 _CHUNKS, _SKELETON = "chunks.npy", "skeleton.npz"
@@ -54,28 +52,25 @@ class ReadJob:
     ----------
     folder : Path
         Of the run of the points.
-    number : int
-        Of the file among all.
-    source : Fingerprint
-    options : mapping
-        Of the reader, plain values.
-    where : mapping of str to sequence of float
-        Values of attributes that points must have.
-    candidates : {"last", "all"} or None
-        Returns of a pulse, where only those points are wanted that may be ground.
+    choice : Choice
+        The file, and which of its points are taken.
+    in_place : (Bounds, int) or None
+        Bounds and count of its points, of one that is read in place: it is only counted.
     """
 
     folder: Path
-    number: int
-    source: Fingerprint
-    options: Mapping[str, Any] = field(default_factory=dict)
-    where: Mapping[str, Sequence[float]] = field(default_factory=dict)
-    candidates: GroundReturns | None = None
+    choice: Choice
+    in_place: tuple[Bounds, int] | None = None
 
     @property
     def key(self) -> str:
         """Name of the task."""
-        return f"{self.number:06d}"
+        return f"{self.choice.number:06d}"
+
+    @property
+    def source(self) -> Fingerprint:
+        """The file."""
+        return self.choice.source
 
 
 def read_input(job: ReadJob) -> Record:
@@ -105,42 +100,39 @@ def read_input(job: ReadJob) -> Record:
 def _read(job: ReadJob, started: float) -> Record:
     path = Path(job.source.path)
     job.source.require_same()
-    chunks: list[Chunk] = []
+    kept = _Kept(job)
     skeletons: list[NumberedPoints] = []
     low, high = math.inf, -math.inf
     extent = Extent()
-    candidates = None if job.candidates is None else Candidates(job.candidates)
-    with stream_points(path, chunk_points=CHUNK_POINTS, **job.options) as stream:
+    choice = job.choice
+    candidates = None if choice.candidates is None else Candidates(choice.candidates)
+    with stream_points(path, chunk_points=CHUNK_POINTS, **choice.options) as stream:
         left_out = 0
-        for found in stream:
-            wanted = _choose(found.attributes, job.where, len(found.points))
-            if wanted is not None:
-                found = found.take(wanted)
-                left_out += len(wanted) - len(found)
+        for every in stream:
+            found = choice.choose(every)
+            left_out += len(every) - len(found)
             extent = extent.with_points(found.points)
             if candidates is not None:
                 found = found.take(candidates.find(found.attributes, len(found)))
-            points, rows = found.points, found.rows
-            if not len(points):
+            if not len(found):
                 continue
-            numbers = rows + np.int64(job.number) * ROWS_OF_A_FILE
-            low, high = min(low, points[:, 2].min()), max(high, points[:, 2].max())
-            for part in split_numbers(NumberedPoints(points, numbers)):
-                chunks.append(write_chunk(job.folder, job.number, len(chunks), *part))
-                skeletons.append(find_skeleton(part))
+            some = choice.number_points(found)
+            low, high = min(low, some.points[:, 2].min()), max(high, some.points[:, 2].max())
+            kept.add(some)
+            skeletons.append(find_skeleton(some))
         crs, unit = stream.crs, stream.elevation_unit
         told = _Told.of(stream.end)
         further = [] if candidates is None else [*candidates.notes]
         _require_tiles(stream, path)
     job.source.require_same()
     if left_out:
-        further.append(_describe_left_out(left_out, path, job.where))
+        further.append(_describe_left_out(left_out, path, choice.where))
     index, outline = f"{job.key}.chunks.npy", f"{job.key}.skeleton.npz"
-    files: list[str] = []
+    chunks, files = kept.save()
     if chunks:
         save_chunks(job.folder / index, chunks)
         save_points(job.folder / outline, NumberedPoints.join(skeletons))
-        files = [index, outline, *(chunk.path.name for chunk in chunks)]
+        files = [index, outline, *files]
     return Record(
         job.key,
         "done" if chunks else "empty",
@@ -156,6 +148,33 @@ def _read(job: ReadJob, started: float) -> Record:
         },
         files={name: hash_file(job.folder / name) for name in files},
     )
+
+
+class _Kept:
+    """What is kept of a file as it is read: all of its points, or how many lie where."""
+
+    def __init__(self, job: ReadJob) -> None:
+        self._job = job
+        self._chunks: list[Chunk] = []
+        self._counting = None if job.in_place is None else Counting(*job.in_place)
+
+    def add(self, some: NumberedPoints) -> None:
+        """Keep some points, at least one."""
+        if self._counting is not None:
+            self._counting.add(some)
+            return
+        for part in split_numbers(some):
+            number = len(self._chunks)
+            self._chunks.append(
+                write_chunk(self._job.folder, self._job.choice.number, number, *part)
+            )
+
+    def save(self) -> tuple[list[Chunk], list[str]]:
+        """Return the chunks, and the names of what was written."""
+        if self._counting is None:
+            return self._chunks, [chunk.path.name for chunk in self._chunks]
+        made = self._counting.save(self._job.folder, self._job.choice)
+        return [*made], [path.name for one in made for path in one.paths]
 
 
 def _record_nothing(job: ReadJob, end: StreamEnd, started: float) -> Record:
@@ -250,21 +269,6 @@ def _describe_left_out(count: int, path: Path, where: Mapping[str, Sequence[floa
         f"{name} {' or '.join(f'{value:g}' for value in values)}" for name, values in where.items()
     )
     return f"{counted(count, 'point')} of '{path.name}' without {wanted} were left out."
-
-
-def _choose(
-    attributes: Mapping[str, AnyArray], where: Mapping[str, Sequence[float]], count: int
-) -> BoolArray | None:
-    """Tell which points have the wanted values; None if all are wanted."""
-    if not where:
-        return None
-    chosen = np.ones(count, np.bool_)
-    for name, values in where.items():
-        if name not in attributes:
-            there = ", ".join(attributes) or "none"
-            raise OptionError("where", name, f"an attribute of the points: {there}")
-        chosen &= np.isin(attributes[name], np.asarray(values))
-    return chosen
 
 
 def save_points(path: Path, points: NumberedPoints) -> None:
@@ -367,7 +371,11 @@ def name_rows(folder: Path, numbers: Sequence[int]) -> str:
 
 
 def read_inputs(
-    run: Run, sources: Sequence[Fingerprint], phase: Phase, **asked: Any
+    run: Run,
+    sources: Sequence[Fingerprint],
+    phase: Phase,
+    places: Sequence[tuple[Bounds, int] | None],
+    **asked: Any,
 ) -> StoredPoints:
     """Read every input that is not read yet, and join what is known of all.
 
@@ -377,8 +385,10 @@ def read_inputs(
         Of the points.
     sources : sequence of Fingerprint
     phase : Phase
+    places : sequence of (Bounds, int) or None
+        Of each file what it is read in place by, as of :class:`ReadJob`.
     **asked
-        Options and values of attributes, as of :class:`ReadJob`.
+        Options and values of attributes, as of :class:`.in_place.Choice`.
 
     Raises
     ------
@@ -387,7 +397,10 @@ def read_inputs(
     CrsError
         If files are in several coordinate reference systems.
     """
-    jobs = [ReadJob(run.folder, number, one, **asked) for number, one in enumerate(sources)]
+    jobs = [
+        ReadJob(run.folder, Choice(number, one, **asked), place)
+        for number, (one, place) in enumerate(zip(sources, places, strict=True))
+    ]
     records = phase.run(run, _PHASE, read_input, jobs)
     names = {job.key: Path(job.source.path).name for job in jobs}
     crs, unit = _require_one_crs(records, names), _require_one_unit(records, names)

@@ -17,13 +17,28 @@ from ..tin.tiling import (
     list_sides,
     reduce_to_hull,
 )
+from .chunks import Chunk, save_array
+from .in_place import FileInPlace
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
+    from pathlib import Path
 
     from ..base.arrays import BoolArray, Float64Array, Int64Array
     from ..tin.tiling import Discs
-    from .chunks import Chunk
+
+_ENTRY = np.dtype(
+    [
+        ("file", "<u4"),
+        ("part", "<u4"),
+        ("first", "<i8"),
+        ("count", "<i8"),
+        ("box", "<f8", 4),
+        ("shape", "<u2", 2),
+        ("is_in_place", "?"),
+    ]
+)
+"""A chunk in the list of all."""
 
 _SIDE_OF_SKELETON = 32
 """Rows and columns of the cells each of which keeps its outermost points, however many chunks."""
@@ -145,8 +160,7 @@ class PointStore:
             if distances[k] > radius * _ABOUT:
                 return
             chunk = self.chunks[k]
-            for slices in chunk.list_cells_near(center, radius * _ABOUT):
-                points = chunk.read(slices)
+            for points in chunk.read_near(center, radius * _ABOUT):
                 yield points, np.hypot(*(points.points[:, :2] - center).T)
 
     def _find(self, boxes: Float64Array) -> Iterator[tuple[int, Int64Array]]:
@@ -169,8 +183,31 @@ class PointStore:
         found = []
         for number, met in self._find(boxes):
             chunk = self.chunks[number]
-            found.append(chunk.read(chunk.list_slices(chunk.locate(boxes[met]))))
+            found.append(chunk.read_boxes(boxes[met]))
         return _sort(found)
+
+
+def save_chunks(path: Path, chunks: list[Chunk]) -> None:
+    """Write what is known of chunks, so that tasks need not be handed it."""
+    entries = np.zeros(len(chunks), _ENTRY)
+    for entry, chunk in zip(entries, chunks, strict=True):
+        box = chunk.bounds
+        entry["file"], entry["part"] = chunk.file, chunk.part
+        entry["first"], entry["count"] = chunk.first, chunk.count
+        entry["box"] = box.xmin, box.ymin, box.xmax, box.ymax
+        entry["shape"] = chunk.shape
+        entry["is_in_place"] = isinstance(chunk, FileInPlace)
+    save_array(path, entries)
+
+
+def load_chunks(path: Path, folder: Path) -> list[Chunk]:
+    """Read what :func:`save_chunks` wrote, of chunks in a folder."""
+    return [
+        (FileInPlace if is_in_place else Chunk)(
+            folder, file, part, first, count, Bounds(*box.tolist()), (int(shape[0]), int(shape[1]))
+        )
+        for file, part, first, count, box, shape, is_in_place in np.load(path).tolist()
+    ]
 
 
 def _bound(discs: Discs) -> Float64Array:
@@ -216,7 +253,7 @@ def count_by_cells(chunks: Sequence[Chunk], bounds: Bounds, side: int) -> Int64A
     counts = np.zeros(side * side, np.int64)
     for chunk in chunks:
         rows, columns = chunk.shape
-        box = chunk.bounds
+        box = chunk.lattice
         x = box.xmin + (np.arange(columns) + 0.5) * (box.width / columns)
         y = box.ymin + (np.arange(rows) + 0.5) * (box.height / rows)
         across, up = (

@@ -10,9 +10,9 @@ import numpy as np
 from ..base.errors import ReadError
 from ..terrain.surface import trace_rings
 from ..tin import Survey
-from ..tin.tiling import NumberedPoints
+from ..tin.tiling import NumberedPoints, list_sides
+from .chunks import ROWS_OF_A_FILE
 from .lines import GivenLines
-from .reading import ROWS_OF_A_FILE
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -81,10 +81,11 @@ def _mark_cells(points: StoredPoints) -> tuple[BoolArray, Int64Array]:
 
 
 def _list_cells(points: StoredPoints) -> Iterator[tuple[Int64Array, NumberedPoints]]:
-    """Yield row and column of the cells of each chunk, (2, k), and the points."""
+    """Yield row and column of the cells of parts of all, (2, k), and the points."""
     if points.lattice is None:
         raise AssertionError("points of no raster with voids")
     width, step = points.lattice
     for chunk in points.open().chunks:
-        some = chunk.read([slice(0, chunk.count)])
-        yield np.stack(np.divmod(some.numbers % ROWS_OF_A_FILE, width)) // step, some
+        for box in chunk.list_parts():
+            some = chunk.read_boxes(np.array([list_sides(box)]))
+            yield np.stack(np.divmod(some.numbers % ROWS_OF_A_FILE, width)) // step, some

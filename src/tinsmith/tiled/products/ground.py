@@ -27,8 +27,8 @@ from ...terrain.ground_filter import (
 )
 from ...terrain.parts import are_owned
 from ...terrain.parts.ground import GroundWindow, choose_reach
+from ..chunks import ROWS_OF_A_FILE
 from ..labelled import GroundTiles, name_files
-from ..reading import ROWS_OF_A_FILE
 from ..running import Fingerprint, Record, Run, hash_file
 from ..tasks import TileProduct
 
@@ -45,7 +45,7 @@ FILES = "files"
 """Step in which files are written, and their folder."""
 
 _UNCLASSIFIED, _GROUND = 1, 2
-_CHOOSING = ("where", "duplicates", "candidates")
+_CHOOSING = ("where", "duplicates", "candidates", "in_place")
 """Options of the points that are none of the reader."""
 
 

@@ -191,7 +191,7 @@ def join(
         [_find(folder, record, suffix) for record in every] for suffix in (_OWN, _USED, _NUMBERS)
     )
     chunks = open_store(points.folder).chunks
-    count = number_vertices(own, used, made, np.array([chunk.first for chunk in chunks]))
+    count = number_vertices(own, used, made, np.concatenate([chunk.firsts for chunk in chunks]))
     filled = {key: record for key, record in records.items() if record.values.get("triangles")}
     return SurfaceParts(points, options, filled, folder, count)
 

@@ -83,7 +83,7 @@ def join(
     asked = [stems[key].with_name(f"{key}{one}") for one in (_ROWS, _USED) for key in keys]
     made = [work / f"{path.name}{_NUMBERS}" for path in asked]
     chunks = open_store(points.folder).chunks
-    firsts = np.array([chunk.first for chunk in chunks])
+    firsts = np.concatenate([chunk.firsts for chunk in chunks])
     count = number_vertices(asked[: len(keys)], asked, made, firsts)
     own = [stems[key].with_name(f"{key}{_POINTS}") for key in keys]
     vertices = place_points(work, count, zip(made, own, strict=False))
