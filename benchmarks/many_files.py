@@ -6,12 +6,16 @@ processes as cores; the same tiles to a raster of 1 m by ``tinsmith raster``, wi
 over all processes. ``--format csv`` takes one file of delimited text with the same points instead.
 ``--beside`` computes the raster of the ground points in one text file by both ``tinsmith raster``
 and ``gdal_grid -a linear`` (10^6 points take GDAL minutes), and tells how much they differ.
+``--in-place`` makes rasters of an octree (COPC) of that many points and of a cloud optimized
+GeoTIFF of as many cells, copied and read in place, and tells what the folder of the run takes.
 """
 
 from __future__ import annotations
 
 import argparse
+import filecmp
 import os
+import resource
 import shutil
 import subprocess
 import sys
@@ -25,6 +29,7 @@ import numpy as np
 import rasterio
 
 from .datasets.lidar_tiles import make_ground, make_lidar_tiles, make_text
+from .datasets.octrees import write_octree
 from .report.tables import TEXT, Table, add_option
 
 COLUMNS = {
@@ -34,6 +39,14 @@ COLUMNS = {
     "M points/s": "{:.2f}",
     "of decoding": "{:.2f}",
     "peak MB": "{:,.0f}",
+}
+PLACES = {
+    "what": TEXT,
+    "points": "{:,}",
+    "seconds": "{:.1f}",
+    "core seconds": "{:.1f}",
+    "peak MB": "{:,.0f}",
+    "disk MB": "{:,.0f}",
 }
 IN_TILES = ("--tiles", "1")
 """Whatever memory there is."""
@@ -106,6 +119,26 @@ def _measure_own(process: int) -> int:
     return int(sizes.get("Pss_Anon", 0)) + int(sizes.get("Pss_Shmem", 0))
 
 
+class PeakDisk(PeakMemory):
+    """The most that a folder holds at a time: a context."""
+
+    def __init__(self, folder: Path) -> None:
+        super().__init__(0)
+        self._folder = folder
+
+    def _watch(self) -> None:
+        while not self._ended.wait(_INTERVAL):
+            found = sum(_measure_size(one) for one in self._folder.rglob("*"))
+            self.megabytes = max(self.megabytes, found / 1e6)
+
+
+def _measure_size(path: Path) -> int:
+    try:
+        return path.stat().st_size
+    except OSError:  # gone since
+        return 0
+
+
 def time_program(command: list[str]) -> tuple[float, float]:
     """Run a program; return seconds and the peak of memory."""
     begin = time.perf_counter()
@@ -169,6 +202,47 @@ def compare_with_gdal(folder: Path, tiles: list[Path], workers: int, table: Tabl
     )
 
 
+def make_elevations(path: Path, count: int) -> Path:
+    """Write about so many cells of 1 m as a cloud optimized GeoTIFF, unless that is there."""
+    if path.exists():
+        return path
+    side = round(count**0.5)
+    row, column = np.mgrid[:side, :side]
+    noise = np.random.default_rng(1).normal(0.0, 0.05, row.shape)
+    cells = 400 + 60 * np.sin(column / 180) * np.cos(row / 230) + noise
+    place = rasterio.Affine(1.0, 0.0, 500_000.0, 0.0, -1.0, 4_100_000.0)
+    size = {"count": 1, "height": side, "width": side, "dtype": "float32"}
+    how = {"driver": "COG", "compress": "deflate", "predictor": 3}
+    beside = path.with_suffix(".part")
+    with rasterio.open(beside, "w", **size, **how, crs="EPSG:32616", transform=place) as dataset:
+        dataset.write(np.round(cells, 2).astype(np.float32), 1)
+    beside.rename(path)
+    return path
+
+
+def compare_places(folder: Path, octree: Path, count: int, workers: int, table: Table) -> None:
+    """Compute rasters of copied points and of points in place, whose files must be the same."""
+    elevations = make_elevations(folder / f"elevations-{count:.0e}.tif", count)
+    sources = {"COPC": (octree, ("--classes", "2")), "COG": (elevations, ())}
+    for name, (source, options) in sources.items():
+        made = {"copied": folder / f"{name}.tif", "in place": folder / f"{name}-in-place.tif"}
+        for how, output in made.items():
+            more = (*IN_TILES, *options, *(("--in-place",) if how == "in place" else ()))
+            before = _measure_cores()
+            with PeakDisk(output.with_name(f"{output.name}.run")) as disk:
+                seconds, peak = rasterize(source, output, workers, *more)
+            cores = _measure_cores() - before
+            table.show(f"{name}, {how}", count, seconds, cores, peak, disk.megabytes)
+        if not filecmp.cmp(*made.values(), shallow=False):
+            raise SystemExit(f"{name}: the rasters differ")
+
+
+def _measure_cores() -> float:
+    """Return the processor's time of all processes that have ended."""
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return used.ru_utime + used.ru_stime
+
+
 def main() -> None:
     """Measure and print."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
@@ -178,13 +252,19 @@ def main() -> None:
     parser.add_argument("--workers", type=int, default=len(os.sched_getaffinity(0)))
     parser.add_argument("--format", choices=("laz", "csv"), default="laz")
     parser.add_argument("--beside", action="store_true", help="gdal_grid, on the ground points")
+    parser.add_argument("--in-place", action="store_true", help="beside copies; one tile")
     add_option(parser)
     given = parser.parse_args()
+    if given.in_place:
+        given.tiles = 1
     lidar = given.folder / f"lidar-{given.points:.0e}-{given.tiles}"
     tiles = make_lidar_tiles(lidar, given.points, given.tiles, workers=given.workers)
-    table = Table(COLUMNS)
+    table = Table(PLACES if given.in_place else COLUMNS)
     output = given.folder / "dtm.tif"
-    if given.beside:
+    if given.in_place:
+        octree = write_octree(tiles[0], given.folder / f"octree-{given.points:.0e}.copc.laz")
+        compare_places(given.folder, octree, given.points, given.workers, table)
+    elif given.beside:
         compare_with_gdal(given.folder, tiles, given.workers, table)
     elif given.format == "csv":
         text = make_text(tiles, given.folder / f"points-{given.points:.0e}.csv")

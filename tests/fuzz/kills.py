@@ -11,6 +11,7 @@ import time
 import traceback
 import warnings
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any, NamedTuple
@@ -72,6 +73,7 @@ def generate(rng: np.random.Generator) -> Case:
         "seed": int(rng.integers(0, 10**6)),
         "tiles": int(rng.integers(2, 17)),
         "kills": kills,
+        "in_place": bool(rng.random() < 0.4),
     }
 
 
@@ -81,9 +83,11 @@ def examine(case: Case) -> str:
         folder = Path(name).resolve()
         for one in ("inputs", "tmp", "whole", "killed"):
             (folder / one).mkdir()
-        _write_inputs(folder / "inputs", case["seed"])
+        is_there = bool(case.get("in_place")) and case["product"] != "ground"
+        write = _write_raster if is_there else _write_inputs
+        write(folder / "inputs", case["seed"])
         product = PRODUCTS[case["product"]]
-        asked = {"tiles": case["tiles"]}
+        asked = {"tiles": case["tiles"], "in_place": is_there}
         alone = _start(product, folder, "whole", asked | {"executor": Shuffled(case["seed"])})
         _require_ended(alone, folder)
         killed = 0
@@ -109,8 +113,18 @@ def _write_inputs(folder: Path, seed: int) -> None:
         ts.write(ts.Survey(points=points[k::3], crs=CRS), folder / f"part{k}.laz")
 
 
+def _write_raster(folder: Path, seed: int) -> None:
+    """Write as many points as cells of one raster, which is read in place."""
+    rng = np.random.default_rng(seed)
+    row, column = np.mgrid[:50, :60]
+    cells = 10 + 4 * np.sin(column / 9) + rng.normal(0, 0.05, row.shape)
+    grid = ts.Grid(ts.Bounds(499_990.0, 3_999_990.0, 500_110.0, 4_000_090.0), row.shape, 2.0)
+    ts.write(ts.Raster({"elevation": cells}, grid, crs=CRS), folder / "cells.tif")
+
+
 def _start(product: Product, folder: Path, name: str, way: dict[str, Any]) -> int:
     """Start a run in a process group of its own; what is raised lies in a file afterwards."""
+    in_place = way.pop("in_place")
     process = os.fork()
     if process:
         return process
@@ -120,7 +134,10 @@ def _start(product: Product, folder: Path, name: str, way: dict[str, Any]) -> in
         os.dup2(os.open(os.devnull, os.O_WRONLY), 2)
         os.environ["TMPDIR"] = tempfile.tempdir = str(folder / "tmp")
         warnings.simplefilter("ignore")
-        product.write(ts.tiles(folder / "inputs"), folder / name / product.name, **way)
+        cloud = ts.tiles(next((folder / "inputs").glob("*.tif"), folder / "inputs"))
+        assert not in_place or replace(cloud, in_place=True).plan().in_place
+        cloud = replace(cloud, in_place=in_place)
+        product.write(cloud, folder / name / product.name, **way)
         code = 0
     except BaseException:
         (folder / "error.txt").write_text(traceback.format_exc(), encoding="utf-8")

@@ -88,10 +88,11 @@ def examine(case: Case) -> str:
             for k, part in enumerate(parts)
         ]
         cloud_of_files = ts.tiles(files, duplicates=case["duplicates"], **case["lines"])
-        return _compare(case, tin, cloud_of_files, Path(folder))
+        return compare(case, tin, cloud_of_files, Path(folder))
 
 
-def _compare(case: Case, tin: ts.TIN, cloud: ts.TiledPoints, folder: Path) -> str:
+def compare(case: Case, tin: ts.TIN, cloud: ts.TiledPoints, folder: Path) -> str:
+    """Require what tiles make to be what memory makes; tell how many products there are."""
     low, high = tin.points[:, 2].min(), tin.points[:, 2].max()
     level = float(low + (high - low) * 0.4)
     bounds = tin.bounds

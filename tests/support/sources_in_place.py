@@ -13,12 +13,12 @@ __all__ = ["SOURCES", "write_groups", "write_octree", "write_raster", "write_sou
 CRS = "EPSG:32616"
 
 
-def write_octree(path, count=1_500):
+def write_octree(path, count=1_500, *, seed=4):
     """Write COPC of points of two classes on a lattice of 0.5, some at one place."""
     import laspy
     import pyproj
 
-    rng = np.random.default_rng(4)
+    rng = np.random.default_rng(seed)
     header = laspy.LasHeader(version="1.4", point_format=6)
     header.scales, header.offsets = np.array([0.01, 0.01, 0.01]), CORNER
     cloud = laspy.LasData(header)

@@ -126,9 +126,18 @@ def fuzz(*arguments):
 
 
 @pytest.mark.slow
-def test_a_run_whose_first_process_is_killed_goes_on(tmp_path):
+@pytest.mark.parametrize(
+    "more",
+    [
+        {},
+        {"in_place": True},
+        {"in_place": True, "kills": [{**CASE["kills"][0], "victim": "worker"}]},
+    ],
+    ids=["copied", "in place", "a worker in place"],
+)
+def test_a_run_that_is_killed_goes_on(tmp_path, more):
     find = tmp_path / "case.json"
-    find.write_text(json.dumps({"campaign": "kills", "seed": 1, "case": CASE}))
+    find.write_text(json.dumps({"campaign": "kills", "seed": 1, "case": CASE | more}))
     assert fuzz("--module", "fuzz.kills", "--replay", find) == "killed 1 times\n"
 
 

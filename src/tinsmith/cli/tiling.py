@@ -239,7 +239,7 @@ def _add_places(facts: Facts, plan: Plan) -> None:
     text = counted(plan.in_place, "file")
     others = [f"{counted(count, 'file')} {why}" for why, count in plan.copied.items()]
     text = f"{text}; copied: {'; '.join(others)}" if others else text
-    facts.add("Read in place", text, files_in_place=plan.in_place, files_copied=plan.copied)
+    facts.add("In place", text, files_in_place=plan.in_place, files_copied=plan.copied)
 
 
 @contextmanager

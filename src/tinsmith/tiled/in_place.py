@@ -12,6 +12,7 @@ import json
 from collections import OrderedDict
 from dataclasses import asdict, dataclass, field
 from functools import cached_property
+from pathlib import Path
 from threading import RLock
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -28,7 +29,6 @@ from .running import Fingerprint
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
-    from pathlib import Path
 
     from ..base.arrays import AnyArray, BoolArray, Float64Array, Int64Array
     from ..base.policies import GroundReturns
@@ -246,7 +246,7 @@ class FileInPlace(Chunk):
         return self.path, self.paths[2].stat().st_mtime_ns
 
     @cached_property
-    def lattice(self) -> Bounds:  # type: ignore[override]
+    def lattice(self) -> Bounds:
         """What the cells divide; a point outside of it is in the nearest one."""
         return Bounds(**self._told["lattice"])
 
@@ -399,10 +399,11 @@ class FileInPlace(Chunk):
         known = np.diff(self.offsets).reshape(self.shape)
         part = slice(south, north + 1), slice(west, east + 1)
         if not np.array_equal(counts[part], known[part]):
+            path = Path(self._choice.source.path)
             raise ReadError(
-                f"'{self._choice.source.path}' has other points in a box than in all of it: it "
-                "was changed, or its index is wrong. Read it without `in_place`.",
-                path=self._choice.source.path,
+                f"'{path}' has other points in a box than in all of it: it was changed, or its "
+                "index is wrong. Read it without `in_place`.",
+                path=path,
             )
 
 
