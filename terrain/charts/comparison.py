@@ -131,21 +131,20 @@ def _add_legend(figure: Any) -> None:
     from matplotlib.patches import Patch
 
     edge: dict[str, Any] = {"edgecolor": TRIANGULATIONS["edge"], "linewidth": 0.8}
+    kinds = {
+        "sound": "empty circle",
+        "violating": "point in the circle",
+        "overlapping": "overlapping",
+        "gap": "not covered",
+    }
+    handles: list[Any] = [
+        Patch(facecolor=TRIANGULATIONS[kind], label=label, **edge) for kind, label in kinds.items()
+    ]
+    handles[2].set_alpha(2 * _VEIL)
+    line = Line2D([], [], color=TRIANGULATIONS["unextended"], linewidth=2.4)
+    line.set_label("edge not extended")
     figure.legend(
-        handles=[
-            Patch(facecolor=TRIANGULATIONS["sound"], label="empty circle", **edge),
-            Patch(facecolor=TRIANGULATIONS["violating"], label="point in the circle", **edge),
-            Patch(
-                facecolor=TRIANGULATIONS["overlapping"],
-                alpha=2 * _VEIL,
-                label="overlapping",
-                **edge,
-            ),
-            Patch(facecolor=TRIANGULATIONS["gap"], label="not covered", **edge),
-            Line2D(
-                [], [], color=TRIANGULATIONS["unextended"], linewidth=2.4, label="edge not extended"
-            ),
-        ],
+        handles=[*handles, line],
         loc="outside lower center",
         ncols=5,
         frameon=False,

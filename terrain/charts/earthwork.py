@@ -15,7 +15,7 @@ from ..gridding import rasterize
 from ..gridding.grids import cover
 from ..gridding.shading import hillshade
 from .figures import INK, picture
-from .maps import PIXELS, draw_scale, draw_shade, start_map
+from .maps import PIXELS, draw_cells, draw_scale, draw_shade, start_map
 
 if TYPE_CHECKING:
     from ...base.arrays import Float64Array
@@ -26,7 +26,6 @@ if TYPE_CHECKING:
 _PURPOSE = "A cut and fill map"
 _PAD = 0.18
 """Of the ground around what is cut and filled, as a share of its extent."""
-"""From the deepest cut over nothing to the highest fill."""
 _LIGHTS = (-330, 245)
 """What is black and what is white: the ground is paler than what matters."""
 _SCALE = 0.95
@@ -127,20 +126,9 @@ def _draw_difference(drawn: Map, tin: TIN) -> None:
     colors = optional.load("matplotlib.colors", _PURPOSE)
     axes, (x, y, height) = drawn.axes, tin.points.T
     most = float(np.abs(height).max()) or 1.0
-    raster = rasterize(tin, grid=_choose_grid(tin, axes))
-    bounds = raster.grid.bounds
-    view = axes.get_xlim(), axes.get_ylim()
-    image = axes.imshow(
-        np.ma.masked_invalid(raster.bands["elevation"]),
-        extent=(bounds.xmin, bounds.xmax, bounds.ymin, bounds.ymax),
-        cmap=colors.LinearSegmentedColormap.from_list("earthwork", palette.EARTHWORK),
-        vmin=-most,
-        vmax=most,
-        aspect=axes.get_aspect(),
-        interpolation="nearest",
-    )
-    axes.set_xlim(view[0])  # images bring limits of their own
-    axes.set_ylim(view[1])
+    ramp = colors.LinearSegmentedColormap.from_list("earthwork", palette.EARTHWORK)
+    cells = rasterize(tin, grid=_choose_grid(tin, axes))
+    image = draw_cells(axes, cells, limits=(-most, most), cmap=ramp, interpolation="nearest")
     levels = _choose_levels(height)
     if len(levels):
         lines = axes.tricontour(

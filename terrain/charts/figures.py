@@ -1,4 +1,4 @@
-"""Figures: what all pictures share: how they begin, their title, and the colour of words."""
+"""Figures: what all pictures share: how they begin, title, colour of words, notes and files."""
 
 from __future__ import annotations
 
@@ -7,18 +7,21 @@ from functools import wraps
 from typing import TYPE_CHECKING, Any, TypeVar, cast
 
 from ...base import optional
+from ...base.atomic import replacing
 from ...base.products import notes_of_surfaces, product
 from ...tin.surface import Surface
 from ..drawing import draw_north_up, palette
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
+    from pathlib import Path
 
 F = TypeVar("F", bound="Callable[..., Any]")
 
 INK = palette.INK
 _TITLE = {"fontsize": 15, "color": INK, "parse_math": False}
-"""How a title is written."""
+_CAPTION = {**_TITLE, "fontsize": 9}
+"""How titles and captions are written."""
 
 
 def start_figure(purpose: str, width: float, height: float, **how: Any) -> Any:
@@ -33,10 +36,16 @@ def start_panels(purpose: str, width: float, height: float, *, title: str) -> An
     return figure
 
 
-def write_title(figure: Any, title: str, *, left: float, drop: float, **how: Any) -> None:
-    """Write a title, inches from the left and below the upper edge."""
+def write_title(figure: Any, title: str, *, left: float) -> None:
+    """Write a title at the upper edge, so many inches from the left."""
     width, height = figure.get_size_inches()
-    figure.text(left / width, 1.0 - drop / height, title, **_TITLE, **how)
+    figure.text(left / width, 1.0 - 0.18 / height, title, va="top", **_TITLE)
+
+
+def write_caption(figure: Any, caption: str, *, left: float) -> None:
+    """Write a line below the title."""
+    width, height = figure.get_size_inches()
+    figure.text(left / width, 1.0 - 0.52 / height, caption, va="top", **_CAPTION)
 
 
 def color_frame(axes: Any) -> None:
@@ -109,3 +118,15 @@ def _add_below(figure: Any, share: float) -> None:
     for text in figure.texts:
         x, y = text.get_position()
         text.set_position((x, share + y * (1.0 - share)))
+
+
+# ---------------------------------------------------------------- files
+
+PICTURE_SUFFIXES = (".png",)
+"""File name endings of what :func:`save_figure` writes."""
+
+
+def save_figure(figure: Any, path: Path, *, dpi: int) -> None:
+    """Write a figure of matplotlib, whole or not at all, with no version in its bytes."""
+    with replacing(path) as file:
+        figure.savefig(file, format="png", dpi=dpi, metadata={"Software": None})

@@ -8,7 +8,7 @@ import numpy as np
 
 from ...base import optional
 from ...base.checks import require_tin
-from ..drawing import interpolate_tints, palette, parse_title, require_features
+from ..drawing import palette, parse_title, require_features
 from ..isolines.labels import contour_labels
 from .figures import picture
 from .maps import draw_polygons, draw_scale, draw_shade, shade_for_map, start_map
@@ -161,7 +161,7 @@ def _draw_labels(axes: Any, labels: Features) -> None:
 
 def _draw_bands(drawn: Map, bands: Features) -> None:
     colors = optional.load("matplotlib.colors", _PURPOSE)
-    ramp = interpolate_tints(max(len(bands), 2)) / 255.0
+    ramp = palette.interpolate_tints(max(len(bands), 2)) / 255.0
     draw_polygons(drawn.axes, bands, ramp[: len(bands)], _PURPOSE)
     bounds = _list_bounds(bands)
     scale = optional.load("matplotlib.cm", _PURPOSE).ScalarMappable(

@@ -83,7 +83,7 @@ def start_map(
     axes.set_aspect(north / east, anchor="NW")
     axes.set_xlim(bounds.xmin - around, bounds.xmax + around)
     axes.set_ylim(bounds.ymin - around, bounds.ymax + around)
-    write_title(figure, title, left=_LEFT, drop=0.18, va="top")
+    write_title(figure, title, left=_LEFT)
     _label_axes(axes, tin, ground)
     right = (box[0] + box[2] + 0.15 / _WIDTH, box[1], (beside - 0.15) / _WIDTH, box[3])
     return Map(figure, axes, ground, right)
@@ -118,20 +118,25 @@ def shade_for_map(tin: TIN, *, smooth: bool = True) -> Raster:
 
 def draw_shade(axes: Any, shade: Raster, *, limits: tuple[float, float] = _SHADES) -> None:
     """Draw a hillshade; ``limits`` are what is black and what is white."""
-    bounds, band = shade.grid.bounds, next(iter(shade.bands.values()))
+    how = {"cmap": "gray", "interpolation": "bilinear", "zorder": 0}
+    draw_cells(axes, shade, limits=limits, **how)
+
+
+def draw_cells(axes: Any, raster: Raster, *, limits: tuple[float, float], **how: Any) -> Any:
+    """Draw the first band of a raster, between two values; what has none stays clear."""
+    bounds, band = raster.grid.bounds, next(iter(raster.bands.values()))[:, :]
     view = axes.get_xlim(), axes.get_ylim()
-    axes.imshow(
-        np.ma.masked_equal(band[:, :], shade.nodata),
+    image = axes.imshow(
+        np.ma.masked_array(band, np.isnan(band) | (band == raster.nodata)),
         extent=(bounds.xmin, bounds.xmax, bounds.ymin, bounds.ymax),
-        cmap="gray",
         vmin=limits[0],
         vmax=limits[1],
         aspect=axes.get_aspect(),
-        interpolation="bilinear",
-        zorder=0,
+        **how,
     )
     axes.set_xlim(view[0])  # images bring limits of their own
     axes.set_ylim(view[1])
+    return image
 
 
 def draw_scale(drawn: Map, mapped: Any, name: str, **how: Any) -> None:

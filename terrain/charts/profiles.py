@@ -12,7 +12,7 @@ from ...base.errors import OptionError
 from ...base.results import Table
 from ..drawing import choose_ticks, format_number, parse_title
 from . import curves
-from .figures import INK, color_frame, picture, start_figure, write_title
+from .figures import INK, color_frame, picture, start_figure, write_caption, write_title
 
 if TYPE_CHECKING:
     from ...base.arrays import Float64Array
@@ -103,11 +103,8 @@ def profile_picture(
     scale = _choose_scale(surfaces, curves.find_ratio(along, up), exaggeration)
     rows = len(surfaces) + 1 + (len(surfaces) == 2)
     figure, axes, band = _start_figure(scale, rows)
-    write_title(figure, heading, left=_LEFT, drop=0.42)
-    text = curves.describe_drawing(system, scale.exaggeration)
-    width, height = figure.get_size_inches()
-    how = {"fontsize": 9, "color": INK, "parse_math": False}
-    figure.text(_LEFT / width, 1 - 0.68 / height, text, **how)
+    write_title(figure, heading, left=_LEFT)
+    write_caption(figure, curves.describe_drawing(system, scale.exaggeration), left=_LEFT)
     curves.draw(axes, surfaces, marks, scale.elevations[0])
     axes.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=6, frameon=False, fontsize=9)
     _dress(axes, scale, up.caption("elevation"))

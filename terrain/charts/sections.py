@@ -14,7 +14,7 @@ from ...base.errors import OptionError
 from ...base.results import Table
 from ..drawing import choose_ticks, parse_title, round_down
 from . import curves
-from .figures import INK, picture, start_figure, write_title
+from .figures import INK, picture, start_figure, write_caption, write_title
 
 if TYPE_CHECKING:
     from ...base.arrays import BoolArray, Float64Array
@@ -123,7 +123,9 @@ def section_picture(
     sheet = _plan_sheet(sections, curves.find_ratio(along, up), exaggeration, int(columns))
     height = _TOP + sheet.rows * (sheet.height + _HEAD) + _BOTTOM
     figure = start_figure(_PURPOSE, _WIDTH, height)
-    _write_heading(figure, heading, sheet, system)
+    write_title(figure, heading, left=_LEFT)
+    caption = curves.describe_drawing(system, sheet.exaggeration)
+    write_caption(figure, f"{caption}; left is left of the centreline", left=_LEFT)
     for number, section in enumerate(sections):
         axes = figure.add_axes(_find_box(figure, sheet, number))
         _draw_section(axes, section, sheet, station=along.unit.symbol if along.unit else "")
@@ -190,14 +192,6 @@ def _find_box(figure: Any, sheet: _Sheet, number: int) -> tuple[float, float, fl
     left = _LEFT + column * (sheet.width + _GAP)
     low = height - _TOP - (row + 1) * (sheet.height + _HEAD) + 0.08
     return left / width, low / height, sheet.width / width, sheet.height / height
-
-
-def _write_heading(figure: Any, heading: str, sheet: _Sheet, crs: CRS | None) -> None:
-    width, height = figure.get_size_inches()
-    write_title(figure, heading, left=_LEFT, drop=0.18, va="top")
-    text = curves.describe_drawing(crs, sheet.exaggeration) + "; left is left of the centreline"
-    how = {"fontsize": 9, "color": INK, "parse_math": False, "va": "top"}
-    figure.text(_LEFT / width, 1 - 0.52 / height, text, **how)
 
 
 def _draw_section(axes: Any, section: _Section, sheet: _Sheet, *, station: str) -> None:

@@ -17,19 +17,14 @@ from .north_up import draw_north_up
 from .palette import (
     BACKGROUNDS,
     COMPASS,
-    PAGE,
-    SAMPLE_FRAME,
     STEEPNESS,
     TRIANGULATIONS,
     Color,
     Palette,
     choose_palette,
-    choose_ramp,
     interpolate_colors,
     interpolate_tints,
-    mix_tints,
     parse_hex,
-    write_hex,
 )
 from .rounding import choose_ticks, format_number, round_down
 
@@ -39,8 +34,6 @@ __all__ = [
     "EDGE_KINDS",
     "LINE_STYLES",
     "NORTH_ARROW",
-    "PAGE",
-    "SAMPLE_FRAME",
     "STEEPNESS",
     "TRIANGULATIONS",
     "UNTITLED",
@@ -53,7 +46,6 @@ __all__ = [
     "add_polylines",
     "choose_origin",
     "choose_palette",
-    "choose_ramp",
     "choose_ticks",
     "draw_north_up",
     "find_line_edges",
@@ -64,11 +56,9 @@ __all__ = [
     "join_edges",
     "make_legend",
     "make_scale_bar",
-    "mix_tints",
     "parse_hex",
     "parse_text",
     "parse_title",
     "require_features",
     "round_down",
-    "write_hex",
 ]

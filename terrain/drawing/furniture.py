@@ -70,6 +70,7 @@ def make_legend(tint: Tint, elevations: tuple[float, float], unit: str) -> Legen
     if tint == "plain":
         return None
     ramp = choose_ramp(tint, 100)
+    ticks: tuple[tuple[float, str], ...]
     if tint == "slope":
         ticks = ((0.0, "0"), (15.0, "15"), (30.0, "30"), (45.0, "45"), (STEEPEST, "60+"))
         return Legend("Slope (degrees)", ramp, (0.0, STEEPEST), ticks)

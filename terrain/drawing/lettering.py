@@ -36,7 +36,7 @@ def fit_text(
     Examples
     --------
     >>> fit_text("A site plan", 5.0, [2.0, 1.0], lambda text, size: size * len(text), lines=2)
-    Lettering(lines=('A', 'sit...'), size=1.0, is_cut=True)
+    Lettering(lines=('A', 'si...'), size=1.0, is_cut=True)
     """
     kept = text[:_LONGEST]
     for size in sizes:

@@ -9,12 +9,10 @@ import numpy as np
 from ...base import optional
 from ...tin.topology import edge_keys, edges_at
 from . import palette
-from .palette import parse_hex
 
 if TYPE_CHECKING:
     from ...base.arrays import AnyArray, Float64Array, Int8Array, Int32Array, Int64Array
     from ...tin import TIN
-    from .palette import Color
 
 _PURPOSE = "A preview"
 
@@ -122,7 +120,7 @@ def add_lines(plotter: Any, tin: TIN, points: Float64Array, *, factor: float = 1
         count = len(ends)
         cells = np.column_stack([np.full(count, 2), np.arange(2 * count).reshape(count, 2)])
         mesh = pv.PolyData(ends.reshape(-1, 3), lines=cells.ravel())
-        actors.append(_draw(plotter, mesh, parse_hex(style.color), style.width * factor))
+        actors.append(_draw(plotter, mesh, style.color, style.width * factor))
     return actors
 
 
@@ -150,7 +148,7 @@ def cut_into_dashes(ends: Float64Array, pairs: Int32Array, length: float) -> Flo
     return made
 
 
-def _draw(plotter: Any, mesh: Any, color: Color, width: float) -> Any:
+def _draw(plotter: Any, mesh: Any, color: str, width: float) -> Any:
     """Draw lines in front of the surface that they lie on."""
     actor = plotter.add_mesh(mesh, color=color, lighting=False, line_width=width, pickable=False)
     actor.mapper.SetResolveCoincidentTopologyToPolygonOffset()
@@ -164,7 +162,7 @@ def add_polylines(
     offsets: AnyArray,
     chosen: Int64Array,
     *,
-    color: Color,
+    color: str,
     width: float,
 ) -> Any:
     """Draw polylines over a surface.

@@ -16,7 +16,7 @@ from .canvas import Canvas, Pen
 from .clipping import Paths, clip_paths, join_paths
 from .grid import draw_grid
 from .lettering import Room, measure_text, outline_text
-from .windows import list_corners, turn
+from .windows import outline, turn
 
 if TYPE_CHECKING:
     from ...base.arrays import AnyArray, Float64Array
@@ -117,8 +117,7 @@ class Map:
             self.drawn.kinds.add(kind)
 
     def _draw_frame(self) -> None:
-        corners = list_corners(self._window.frame)
-        self._canvas.draw_paths([corners[[0, 1, 2, 3, 0]]], _FRAME_PEN, "frame")
+        self._canvas.draw_paths([outline(self._window.frame)], _FRAME_PEN, "frame")
 
     def _fill_water(self) -> None:
         shapely = optional.load("shapely")

@@ -339,7 +339,9 @@ def plan(
     optional.load("matplotlib", PURPOSE)
     choice("layout", layout, SheetLayout)
     style = _Style(labels, points, grid)
-    wording = _Wording.of(title, date)
+    heading = clean_text(parse_title(title, UNTITLED))
+    day = date.isoformat()[:10] if isinstance(date, dt.date) else date
+    day = clean_text(parse_text("date", day, or_none=True))
     layouts = [arrange_sheet(one) for one in Paper.choices(paper, orientation)]
     unit = find_ground_unit(tin.crs, ground_unit)
     line, notes = _as_axis(axis, tin, layout)
@@ -356,29 +358,15 @@ def plan(
     )
     sheets = _arrange(ground, layouts, chosen, layout, line)
     caption = Caption(
-        title=wording.title,
+        title=heading,
         facts=tuple(_list_facts(tin, survey, contents, ground.unit, factor, sheets[-1])),
         scale="",
         sheet="",
-        date=wording.date,
+        date=day,
         unit=ground.unit,
     )
     notes += _list_notes(contents, sheets, factor, interval, caption)
     return Plan(sheets, contents, style, caption, notes)
-
-
-class _Wording(NamedTuple):
-    """Texts of the caller, on one line each."""
-
-    title: str
-    date: str
-
-    @classmethod
-    def of(cls, title: Any, date: Any) -> _Wording:
-        if isinstance(date, dt.date):
-            date = date.isoformat()[:10]
-        words = clean_text(parse_text("date", date, or_none=True))
-        return cls(clean_text(parse_title(title, UNTITLED)), words)
 
 
 def _as_axis(axis: Any, tin: TIN, layout: str) -> tuple[Float64Array | None, list[str]]:

@@ -12,7 +12,7 @@ from .canvas import INK, Pen
 from .grid import PEN as GRID_PEN
 from .lettering import fit_text
 from .mapping import CONTOUR_PENS, LINE_PENS, MATCH_PEN, OUTLINE_PEN
-from .windows import list_corners, turn
+from .windows import outline, turn
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -71,8 +71,7 @@ def draw_title_block(
 
     The legend explains ``kinds``.
     """
-    border = list_corners(layout.border)
-    canvas.draw_paths([border[[0, 1, 2, 3, 0]]], _BORDER, "border")
+    canvas.draw_paths([outline(layout.border)], _BORDER, "border")
     top = layout.title.ymax
     rules = [np.array([(layout.border.xmin, top), (layout.border.xmax, top)])]
     for cell in (layout.scales, layout.title):
@@ -175,10 +174,9 @@ def _draw_scale_bar(canvas: Canvas, layout: Layout, window: Window, caption: Cap
     left, low = cell.xmin + (cell.width - width) / 2, cell.ymin + 3.4 * factor
     for part in range(4):
         box = Bounds(left + part * width / 4, low, left + (part + 1) * width / 4, low + height)
-        ring = list_corners(box)[[0, 1, 2, 3, 0]]
-        canvas.fill([ring], INK if part % 2 == 0 else "white", "scale-bar-part")
-    outline = list_corners(Bounds(left, low, left + width, low + height))
-    canvas.draw_paths([outline[[0, 1, 2, 3, 0]]], _THIN, "scale-bar")
+        canvas.fill([outline(box)], INK if part % 2 == 0 else "white", "scale-bar-part")
+    whole = outline(Bounds(left, low, left + width, low + height))
+    canvas.draw_paths([whole], _THIN, "scale-bar")
     for share, text in bar.labels:
         canvas.write(
             (left + share * width, low + height + 0.8 * factor),
@@ -225,8 +223,8 @@ def _draw_legend(canvas: Canvas, layout: Layout, kinds: Sequence[str]) -> None:
 def _draw_sample(canvas: Canvas, kind: str, x: float, y: float, factor: float) -> None:
     width = 9.5 * factor
     if kind == "water area":
-        box = list_corners(Bounds(x, y - 1.3 * factor, x + width, y + 1.3 * factor))
-        canvas.fill([box[[0, 1, 2, 3, 0]]], palette.WATER, "legend-sample")
+        box = Bounds(x, y - 1.3 * factor, x + width, y + 1.3 * factor)
+        canvas.fill([outline(box)], palette.WATER, "legend-sample")
         return
     if kind in ("point", "grid"):
         arm, pen = (0.7, _THIN) if kind == "point" else (2.0, GRID_PEN)

@@ -51,7 +51,7 @@ class Window:
     @property
     def corners(self) -> Float64Array:
         """Corners of the frame on the ground, (4, 2), from the lower left one to the right."""
-        return self.to_ground(list_corners(self.frame))
+        return self.to_ground(outline(self.frame)[:4])
 
 
 def turn(xy: Float64Array, angle: float) -> Float64Array:
@@ -63,7 +63,7 @@ def turn(xy: Float64Array, angle: float) -> Float64Array:
     return np.stack([cos * x - sin * y, sin * x + cos * y], axis=-1)
 
 
-def list_corners(box: Bounds) -> Float64Array:
-    """Return the corners of a rectangle, from the lower left one to the right."""
+def outline(box: Bounds) -> Float64Array:
+    """Return the ring around a rectangle, (5, 2), from the lower left corner to the right."""
     west, south, east, north = box.xmin, box.ymin, box.xmax, box.ymax
-    return np.array([(west, south), (east, south), (east, north), (west, north)])
+    return np.array([(west, south), (east, south), (east, north), (west, north), (west, south)])

@@ -9,9 +9,8 @@ import numpy as np
 
 from ...base import optional
 from ...tin.topology import edges_at
-from ..drawing import choose_origin, choose_ramp, make_legend, palette, parse_hex
+from ..drawing import choose_origin, make_legend, palette
 from ..surface import Light, compute_normals, measure_aspects, measure_slopes
-from .legend import ElevationRange, find_elevation_range
 
 if TYPE_CHECKING:
     from ...base.arrays import BoolArray, Float32Array, Float64Array, Int32Array
@@ -22,20 +21,13 @@ if TYPE_CHECKING:
 
 _PURPOSE = "A preview"
 
-RELIEF_SHARE = 0.1
-"""Least share of the extent that the relief takes in a picture; below, heights are exaggerated."""
-
-_EXAGGERATIONS = (1.0, 1.5, 2.0, 3.0, 5.0, 10.0, 15.0, 20.0, 30.0, 50.0, 100.0)
-
 BLOCK_SHARE = 0.025
 """Depth of the block below the lowest point, as a share of the extent."""
 
-_BLOCK_COLOR = parse_hex(palette.BLOCK)
 _BLOCK_AMBIENT = 0.72
 _ORTHO_AMBIENT = 0.68
 """A photograph has shadows of its own: the light adds half as much as to tints."""
 
-_EDGE_COLOR = parse_hex(palette.EDGES)
 _EDGE_OPACITY = 0.42
 _FAINTEST_EDGE = 0.04
 _CLEAR_SIDE = 16.0
@@ -53,36 +45,6 @@ _SKY = ((-90.0, 50.0, 0.10), (90.0, 50.0, 0.06))
 _STEEPNESS = math.sin(math.radians(NORTHWEST.altitude))
 """Of the usual sun. For any other the sky above makes up for the difference, so that the tint of
 level ground is always that of the legend."""
-
-
-def choose_exaggeration(tin: TIN, ground: Ground, shown: ElevationRange) -> float:
-    """Choose a round vertical exaggeration that shows the relief.
-
-    It is the smallest of 1, 1.5, 2, 3, 5, 10, 15, ... 100 that lifts the relief to a tenth of the
-    extent (and so to at most a fifth, if 1 is not enough); 1 for level ground. Elevations far off
-    the others do not count.
-    """
-    relief = (shown.high - shown.low) * ground.scale[2]
-    return round_exaggeration(RELIEF_SHARE * measure_extent(tin, ground), relief)
-
-
-def round_exaggeration(wanted: float, relief: float) -> float:
-    """Return the smallest round exaggeration that makes a relief as high as is wanted."""
-    if relief == 0:
-        return 1.0
-    factors = (factor for factor in _EXAGGERATIONS if factor * relief >= wanted)
-    return next(factors, _EXAGGERATIONS[-1])
-
-
-def measure_relief(tin: TIN, ground: Ground) -> ElevationRange:
-    """Return the range of a TIN's elevations, without those that are far off the others."""
-    extent = measure_extent(tin, ground) / ground.scale[2]
-    return find_elevation_range(tin.points[:, 2], extent)
-
-
-def measure_extent(tin: TIN, ground: Ground) -> float:
-    """Return the greater of a TIN's extents to the east and to the north, on the ground."""
-    return float((np.ptp(tin.points[:, :2], axis=0) * ground.scale[:2]).max())
 
 
 def place_vertices(tin: TIN, ground: Ground, exaggeration: float) -> Float64Array:
@@ -119,12 +81,12 @@ def add_terrain(
     actor.prop.interpolation = "Phong"
     if edges:
         actor.prop.show_edges = True
-        actor.prop.edge_color = _EDGE_COLOR
+        actor.prop.edge_color = palette.EDGES
     kept = points if is_far_off is None else points[~is_far_off]
     if not has_block:
         return actor, kept
     block = _make_block(pv, tin, points, float(kept[:, 2].min()))
-    plotter.add_mesh(block, color=_BLOCK_COLOR, culling="back", **_choose_lighting(_BLOCK_AMBIENT))
+    plotter.add_mesh(block, color=palette.BLOCK, culling="back", **_choose_lighting(_BLOCK_AMBIENT))
     rim = block.points if is_far_off is None else _without(block.points, kept)
     return actor, np.vstack([kept, rim])
 
@@ -160,7 +122,7 @@ def add_ortho(plotter: Any, tin: TIN, points: Float64Array, ortho: Ortho, surfac
     surface.mapper.SetRelativeCoincidentTopologyPolygonOffsetParameters(1.0, 1.0)
     if surface.prop.show_edges:
         actor.prop.show_edges = True
-        actor.prop.edge_color = _EDGE_COLOR
+        actor.prop.edge_color = palette.EDGES
     return actor
 
 
@@ -209,16 +171,14 @@ def _choose_tints(
     """Return what a plotter needs to colour a surface, and give it what the colours tell."""
     legend = make_legend(tint, ends, "")
     if legend is None:
-        return {"color": parse_hex(palette.PLAIN)}
+        return {"color": palette.PLAIN}
     low, high = legend.ends if legend.ends[0] < legend.ends[1] else (ends[0] - 0.5, ends[0] + 0.5)
     if tint == "slope":
         surface.cell_data[tint] = measure_slopes(compute_normals(tin), "degrees")
     elif tint == "aspect":
         surface.cell_data[tint] = measure_aspects(compute_normals(tin))
-    colors = np.column_stack([choose_ramp(tint, 256), np.full(256, 255, np.uint8)])
-    table = pv.LookupTable(
-        values=colors, scalar_range=(low, high), nan_color=parse_hex(palette.PLAIN)
-    )
+    colors = np.column_stack([palette.choose_ramp(tint, 256), np.full(256, 255, np.uint8)])
+    table = pv.LookupTable(values=colors, scalar_range=(low, high), nan_color=palette.PLAIN)
     return {"scalars": tint, "cmap": table}
 
 

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-import errno
-import secrets
 from contextlib import contextmanager
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ...base.errors import RenderError
+from ...base.atomic import replacing_path
 from . import opengl
 from .scene import ScenePlotter, make_scene
 from .strips import label_strips, paste_strips
@@ -41,7 +39,9 @@ def write_picture(
     opengl.require_opengl()
     with keep_vtk_plain():
         picture = _render(make_scene(tin, options, ortho))
-    _write(path, picture, options.dpi)
+    resolution = {} if options.dpi is None else {"dpi": (options.dpi, options.dpi)}
+    with replacing_path(path) as beside:
+        picture.save(beside, quality=_JPEG_QUALITY, **resolution)
 
 
 def _render(scene: Scene) -> Image:
@@ -58,21 +58,6 @@ def _render(scene: Scene) -> Image:
         drawn.plotter.close()
     paste_strips(pixels, scene)
     return fromarray(pixels).reduce(_SUPERSAMPLING)
-
-
-def _write(path: Path, picture: Image, dpi: float | None) -> None:
-    """Write a picture whole or not at all."""
-    temporary = path.with_name(f".{path.stem}-{secrets.token_hex(4)}{path.suffix}")
-    resolution: dict[str, Any] = {} if dpi is None else {"dpi": (dpi, dpi)}
-    try:
-        picture.save(temporary, quality=_JPEG_QUALITY, **resolution)
-        temporary.replace(path)
-    except OSError as error:
-        is_full = error.errno == errno.ENOSPC
-        reason = "no space is left on the disk" if is_full else error.strerror or error
-        raise RenderError(f"Cannot write '{path}': {reason}.") from error
-    finally:
-        temporary.unlink(missing_ok=True)
 
 
 @contextmanager

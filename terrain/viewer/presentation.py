@@ -12,18 +12,18 @@ import numpy as np
 
 from ...base.atomic import as_path, replacing
 from ...base.checks import require_type
-from ...base.errors import RenderError
+from ...base.errors import RenderError, WriteError
 from ...base.georeference.units import find_ground
 from ...base.notes import join_notes
 from ...base.products import product
 from ...tin import TIN, Survey
 from ..earthwork import difference
-from .actors import choose_exaggeration, measure_relief
 from .alignment import Aligned, align
 from .options import PreviewKeywords, PreviewOptions
 from .ortho import Ortho, read_ortho
 from .page.content import Start, describe_page, find_labels, make_document
 from .picture import PICTURE_SUFFIXES, write_picture
+from .relief import choose_exaggeration, measure_relief
 from .scene import describe_far_off
 from .window import open_window
 
@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 
     from ...base.arrays import Float64Array
     from ...base.georeference.units import Ground
-    from .legend import ElevationRange
+    from .relief import ElevationRange
 
 PAGE_SUFFIXES = (".html", ".htm")
 PREVIEW_SUFFIXES = (*PICTURE_SUFFIXES, *PAGE_SUFFIXES)
@@ -138,16 +138,15 @@ class Preview:
         'yard.html'
         """
         file = _require_path(path)
-        if file.suffix.lower() in PAGE_SUFFIXES:
+        try:
+            if file.suffix.lower() not in PAGE_SUFFIXES:
+                write_picture(self._require_one("A picture"), file, self._look, self._ortho)
+                return file
             page = self.to_html()
-            try:
-                with replacing(file) as stream:
-                    stream.write(page.encode("utf-8"))
-            except OSError as error:
-                reason = getattr(error, "strerror", None) or error
-                raise RenderError(f"Cannot write '{file}': {reason}.") from error
-        else:
-            write_picture(self._require_one("A picture"), file, self._look, self._ortho)
+            with replacing(file, binary=False) as stream:
+                stream.write(page)
+        except WriteError as error:
+            raise RenderError(str(error)) from error
         return file
 
     def show(self) -> None:
@@ -269,10 +268,10 @@ def preview(
         Factor on heights. Default: a round number that lifts the relief to a tenth of the extent
         or more, 1 where it is steep enough. It is written in the picture.
     edges : bool, optional
-        Draw the edges of the triangles in a picture; a page has a switch for them.
+        Draw the edges of the triangles in a picture, by default not; a page has a switch for them.
     lines : bool, optional
-        Draw the lines in the TIN: hard breaklines dark, soft ones dashed, boundary and holes brown,
-        the water's edge blue.
+        Draw the lines in the TIN, the default: hard breaklines dark, soft ones dashed, boundary and
+        holes brown, the water's edge blue.
     size : tuple of int, optional
         Width and height of a picture or window, pixels, 200 to 5000 each; default (1600, 1000).
     title : str, optional
@@ -290,7 +289,7 @@ def preview(
         Azimuth and altitude of the light in a picture, degrees clockwise from north and above the
         horizon; default (315, 45).
     background : str, optional
-        Of a picture: "white" (the default), "black", "light", "dark", or a colour such as
+        Colour behind a picture: "white" (the default), "black", "light", "dark", or one such as
         "#e8edf2". Words are light on a dark one.
     dpi : float, optional
         Dots per inch, 36 to 2400, written into a picture for those who print it.

@@ -19,25 +19,14 @@ from ..drawing import (
     format_number,
     make_legend,
     palette,
-    parse_hex,
 )
 from ..isolines import contours
-from .actors import (
-    BLOCK_SHARE,
-    add_lights,
-    add_ortho,
-    add_terrain,
-    choose_exaggeration,
-    fade_edges,
-    measure_extent,
-    measure_relief,
-    place_vertices,
-    round_exaggeration,
-)
+from .actors import BLOCK_SHARE, add_lights, add_ortho, add_terrain, fade_edges, place_vertices
 from .annotations import Layout, TitleBlock, annotate
 from .camera import aim, measure_pixels_per_unit, place_camera, project_ground_axes
 from .corridor import cut_into_strips, find_corridor, measure_mean_width
 from .overlay import Overlay
+from .relief import choose_exaggeration, measure_extent, measure_relief, round_exaggeration
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -47,9 +36,9 @@ if TYPE_CHECKING:
     from ...tin import TIN
     from .camera import View
     from .corridor import Strips
-    from .legend import ElevationRange
     from .options import PreviewOptions
     from .ortho import Ortho
+    from .relief import ElevationRange
 
 _PURPOSE = "A preview"
 
@@ -59,7 +48,6 @@ _DESIGN_SIZE = (1600.0, 1000.0)
 _RELIEF_OF_STRIP = 0.5
 """Share of a corridor's width that the relief within a strip takes, at least."""
 
-_CONTOUR_COLOR = parse_hex(palette.CONTOURS_3D)
 _CONTOUR_WIDTH = 0.9
 
 _LEAST_WIDTH = 2.0
@@ -271,7 +259,7 @@ def _add_contours(plotter: Any, scene: Scene, interval: float, factor: float) ->
         chosen = np.flatnonzero(found.columns["is_index"] == is_index)
         if len(chosen):
             lines = places, found.offsets[0], chosen
-            add_polylines(plotter, *lines, color=_CONTOUR_COLOR, width=width * factor)
+            add_polylines(plotter, *lines, color=palette.CONTOURS_3D, width=width * factor)
 
 
 def place_in_scene(scene: Scene, points: Float64Array) -> Float64Array:

@@ -11,7 +11,7 @@ from ...base import optional
 from ...base.errors import TinsmithError
 from ...base.georeference.axes import label_axes
 from ...base.policies import Tint
-from ..drawing import add_polylines, choose_origin, palette, parse_hex, round_down
+from ..drawing import add_polylines, choose_origin, palette, round_down
 from ..sections import profile
 from ..surface import compute_normals, measure_slopes
 from . import opengl
@@ -32,7 +32,6 @@ _LEVELS = 12
 """Contour levels, about, when the window chooses their interval."""
 
 _MOST_EXAGGERATION = 20.0
-_MARK_COLOR = parse_hex(palette.MARKS_3D)
 _MARK_SIZE = 12.0
 _SECTION_WIDTH = 3.0
 _CHART_PLACE, _CHART_SIZE = (0.52, 0.16), (0.46, 0.3)
@@ -201,7 +200,7 @@ class Window:
             return
         places = [(one.easting, one.northing, one.elevation) for one in self.readings]
         drawn = place_in_scene(self.scene, np.array(places))
-        options = {"color": _MARK_COLOR, "lighting": False, "pickable": False}
+        options = {"color": palette.MARKS_3D, "lighting": False, "pickable": False}
         self._marks.append(
             plotter.add_points(
                 drawn, point_size=_MARK_SIZE, render_points_as_spheres=True, **options
@@ -224,7 +223,7 @@ class Window:
             drawn.reshape(-1, 3),
             np.arange(0, 2 * len(pairs) + 1, 2),
             np.arange(len(pairs)),
-            color=_MARK_COLOR,
+            color=palette.MARKS_3D,
             width=_SECTION_WIDTH,
         )
 
@@ -236,12 +235,12 @@ class Window:
     def _raise_words(self) -> None:
         """Draw the line, what keys do, and the slider over the annotations."""
         layout, self._words.factor = fit_layout(tuple(self.drawn.plotter.window_size))
-        palette, left = self.scene.title_block.palette, layout.frame.xmin
+        colors, left = self.scene.title_block.palette, layout.frame.xmin
         self._words.clear()
-        self._words.draw_text((left, 14.0), _HELP, palette.grey, size=13)
+        self._words.draw_text((left, 14.0), _HELP, colors.grey, size=13)
         if self._line:
             place = (left, layout.frame.ymax - 14.0)
-            self._words.draw_text(place, self._line, palette.ink, size=17)
+            self._words.draw_text(place, self._line, colors.ink, size=17)
         if self._slider is not None:
             knob, renderer = self._slider.GetRepresentation(), self.drawn.plotter.renderer
             renderer.RemoveViewProp(knob)

@@ -295,11 +295,8 @@ def test_convert_keeps_points_as_points(folder):
     np.testing.assert_array_equal(ts.io.read("out.xyz").points, ts.io.read(SURVEY).points)
 
 
-AS_USUAL = {
-    "view": "oblique", "title": "pyramid", "survey": None, "exaggeration": None, "edges": False,
-    "lines": True, "tint": "elevation", "azimuth": None, "tilt": None, "size": None, "dpi": None,
-    "sun": None, "background": None, "elevations": None, "contours": None, "ortho": None,
-}  # fmt: skip
+AS_USUAL = {"view": "oblique", "title": "pyramid", "survey": None, "ortho": None}
+"""All else has the defaults of the library."""
 
 
 @pytest.fixture

@@ -171,7 +171,7 @@ def _compare_paths(
 def _find_kind(path: Path, writing: Writing, kinds: Sequence[str]) -> str:
     """Return what a suffix, or a format that is named, is meant for."""
     from ..io.registry.lookup import list_writers
-    from ..terrain.drawing.pictures import PICTURE_SUFFIXES
+    from ..terrain.charts import PICTURE_SUFFIXES
 
     name = writing.output_format
     suffix = path.suffix.lower() if name is None else f".{name.strip().lower().lstrip('.')}"
@@ -259,7 +259,7 @@ def require_picture(
 
     ``place`` is the option that names it; ``suffixes`` are those of pictures if none are given.
     """
-    from ..terrain.drawing.pictures import PICTURE_SUFFIXES
+    from ..terrain.charts import PICTURE_SUFFIXES
 
     require_separate(inputs, [Named(path, place)])
     known = suffixes or PICTURE_SUFFIXES
@@ -324,7 +324,7 @@ def _tabulate(features: Features) -> tuple[Table, list[str]]:
 
 def write_figure(figure: Any, path: Path, *, dpi: int) -> None:
     """Write a figure of matplotlib, whole or not at all."""
-    from ..terrain.drawing.pictures import save_figure
+    from ..terrain.charts import save_figure
 
     save_figure(figure, path, dpi=dpi)
     note_written(path)

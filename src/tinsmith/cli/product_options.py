@@ -71,23 +71,34 @@ def _read_parameters(function: str) -> dict[str, FormatOption]:
     spec: Any = find_spec(f"tinsmith.{package}")
     path = Path(spec.origin).parent.joinpath(*modules).with_suffix(".py")
     text = spec.loader.get_data(str(path)).decode()
-    start = text.index(f"\ndef {name}(")
+    start = text.rindex(f"\ndef {name}(")  # the last one: overloads come before
     end = text.index('"""', text.index('"""', start) + 3) + 3
     node: Any = ast.parse(text[start:end]).body[0]
     documented = describe_parameters(cleandoc(ast.get_docstring(node) or ""))
     given = [*node.args.args, *node.args.kwonlyargs]
     least = len(node.args.args) - len(node.args.defaults)
     defaults = [*[None] * least, *node.args.defaults, *node.args.kw_defaults]
-    return {
-        one.arg: FormatOption(
-            one.arg,
-            ast.unparse(one.annotation),
-            _REQUIRED if default is None else ast.literal_eval(default),
-            *documented.get(one.arg, ("", "")),
-        )
+    options = [
+        (one.arg, one.annotation, _REQUIRED if default is None else ast.literal_eval(default))
         for one, default in zip(given, defaults, strict=True)
         if default is None or isinstance(default, ast.Constant)
+    ]
+    if node.args.kwarg is not None:  # whose options have defaults, which the docstring tells
+        options += [(*one, None) for one in _read_keywords(node, text, path, spec.loader)]
+    return {
+        one: FormatOption(one, ast.unparse(kind), default, *documented.get(one, ("", "")))
+        for one, kind, default in options
     }
+
+
+def _read_keywords(node: Any, text: str, path: Path, loader: Any) -> list[tuple[str, Any]]:
+    """Return names and annotations of a function's keywords, those of a TypedDict beside it."""
+    name = node.args.kwarg.annotation.slice.id
+    (module,) = re.findall(rf"^from \.(\w+) import .*\b{name}\b", text, re.MULTILINE)
+    classes: Any = ast.parse(loader.get_data(str(path.with_stem(module)))).body
+    (found,) = (one for one in classes if getattr(one, "name", "") == name)
+    fields = (one for one in found.body if isinstance(one, ast.AnnAssign))
+    return [(one.target.id, one.annotation) for one in fields]
 
 
 def _make_option(one: FormatOption, words: str) -> Decorator:
@@ -107,6 +118,8 @@ def _find_how(one: FormatOption, said: str) -> dict[str, Any]:
     """Return what click needs to know of a value."""
     if "ArrayLike" in one.annotation:
         return {"callback": parse_numbers, "metavar": "NUMBER,..."}
+    if one.annotation.startswith("tuple[float, float]"):
+        return {"callback": parse_numbers, "metavar": "NUMBER,NUMBER"}
     if one.kind.startswith("{"):
         return {"type": Words(re.findall(r'"(.*?)"', one.kind.partition("}")[0]))}
     how = find_parameters(one)

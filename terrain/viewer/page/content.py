@@ -17,14 +17,9 @@ from ....base.georeference.units import find_ellipsoid
 from ....base.sentences import counted
 from ...drawing import (
     LINE_STYLES,
-    PAGE,
-    SAMPLE_FRAME,
-    choose_ramp,
     find_line_edges,
     join_edges,
-    mix_tints,
     palette,
-    write_hex,
 )
 from .packing import pack_counts, pack_rows, pack_triangles, sort_in_morton_order
 
@@ -234,9 +229,9 @@ def _describe_lines(tin: TIN, rows: Int64Array) -> Iterator[dict[str, Any]]:
 def _make_ramps() -> dict[str, list[str]]:
     tints: tuple[Tint, ...] = ("elevation", "slope", "aspect")
     return {
-        **{tint: write_hex(choose_ramp(tint, _COLOURS)) for tint in tints},
-        "difference": write_hex(mix_tints(palette.CUT_RUNGS, _COLOURS // 2))
-        + write_hex(mix_tints(palette.FILL_RUNGS, _COLOURS // 2)),
+        **{tint: palette.write_hex(palette.choose_ramp(tint, _COLOURS)) for tint in tints},
+        "difference": palette.write_hex(palette.mix_tints(palette.CUT_RUNGS, _COLOURS // 2))
+        + palette.write_hex(palette.mix_tints(palette.FILL_RUNGS, _COLOURS // 2)),
     }
 
 
@@ -269,8 +264,8 @@ def make_document(content: Mapping[str, Any]) -> str:
 def _write_colors() -> str:
     """Return the colours of both themes as variables of CSS."""
     themes = ((":root", "light"), (':root[data-theme="dark"]', "dark"))
-    rules = [
-        f"{selector} {{ {' '.join(f'--{name}: {code};' for name, code in PAGE[theme].items())} }}"
-        for selector, theme in themes
-    ]
-    return "\n".join([f":root {{ --sample: {SAMPLE_FRAME}; }}", *rules])
+    rules = [f":root {{ --sample: {palette.SAMPLE_FRAME}; }}"]
+    for selector, theme in themes:
+        codes = " ".join(f"--{name}: {code};" for name, code in palette.PAGE[theme].items())
+        rules.append(f"{selector} {{ {codes} }}")
+    return "\n".join(rules)

@@ -15,11 +15,10 @@ from tinsmith.terrain.drawing.palette import interpolate_tints
 from tinsmith.terrain.viewer.actors import (
     _average_normals,
     add_terrain,
-    choose_exaggeration,
     fade_edges,
-    measure_relief,
     place_vertices,
 )
+from tinsmith.terrain.viewer.relief import choose_exaggeration, measure_relief
 
 pv = pytest.importorskip("pyvista")
 
@@ -109,7 +108,7 @@ def test_surface_and_block_are_handed_over_with_their_colours(edges):
     assert above["scalars"] == "elevation"
     assert above["show_scalar_bar"] is False
     assert (above["ambient"], above["diffuse"], above["specular"]) == (0.36, 1.0, 0.0)
-    assert below["color"] == (206, 203, 197)
+    assert below["color"] == "#cecbc5"
     assert below["culling"] == "back"
     assert below["ambient"] == 0.72
     assert below["diffuse"] == pytest.approx(0.28 / 0.64)  # lit as strongly in all
@@ -195,8 +194,8 @@ def test_each_kind_of_line_is_drawn_with_its_pen(factor):
     pens = [(one["color"], one["line_width"] / factor) for one in plotter.options]
     assert [width for _, width in pens] == pytest.approx([1.8, 1.7, 2.0, 2.4, 2.6])
     soft, hard, hole, boundary, water = (color for color, _ in pens)
-    assert hole == boundary == (150, 58, 34)
-    assert (soft, hard, water) == ((64, 68, 72), (34, 34, 38), (24, 92, 152))
+    assert hole == boundary == "#963a22"
+    assert (soft, hard, water) == ("#404448", "#222226", "#185c98")
     assert not any(one["lighting"] or one["pickable"] for one in plotter.options)
     lengths = [length_of(mesh) for mesh in plotter.meshes]
     assert lengths[1:] == pytest.approx([80.0, 80.0, 400.0, 80.0], rel=1e-6)

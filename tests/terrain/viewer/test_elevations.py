@@ -7,8 +7,8 @@ import pytest
 
 from tinsmith import triangulate
 from tinsmith.terrain import preview
-from tinsmith.terrain.viewer.legend import find_elevation_range
 from tinsmith.terrain.viewer.options import PreviewOptions
+from tinsmith.terrain.viewer.relief import find_elevation_range
 from tinsmith.terrain.viewer.scene import make_scene
 
 pytest.importorskip("pyvista")

@@ -19,9 +19,9 @@ from tinsmith.terrain.drawing import make_scale_bar
 from tinsmith.terrain.drawing.palette import compute_lightness, interpolate_tints
 from tinsmith.terrain.drawing.rounding import choose_ticks, format_number, round_down
 from tinsmith.terrain.viewer import opengl
-from tinsmith.terrain.viewer.actors import choose_exaggeration, measure_relief
 from tinsmith.terrain.viewer.annotations import BAR_WIDTH, Layout
 from tinsmith.terrain.viewer.picture import PICTURE_SUFFIXES
+from tinsmith.terrain.viewer.relief import choose_exaggeration, measure_relief
 
 pv = pytest.importorskip("pyvista")
 
@@ -184,7 +184,7 @@ class TestPicture:
             raise OSError(28, "No space left on device")
 
         monkeypatch.setattr(Image.Image, "save", full)
-        with pytest.raises(RenderError, match="no space is left on the disk"):
+        with pytest.raises(RenderError, match=": No space left on device"):
             preview(hill(steps=4), output=path, size=(400, 250))
         assert path.read_bytes() == b"old"
         assert list(tmp_path.iterdir()) == [path]

@@ -8,28 +8,21 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from ...base.policies import Tint
 from ..command import command
 from ..job import Job, surface_options
 from ..options import CONSOLE, READING, TRIANGULATING
 from ..output.facts import Facts
 from ..output.failures import note_written, report_warning
-from ..parameters import (
-    choice_option,
-    file_option,
-    input_files,
-    number_option,
-    numbers_option,
-    parsed,
-    picture_option,
-)
+from ..parameters import file_option, input_files, parsed, picture_option
 from ..paths import INPUT, Named, describe_inputs, make_title
+from ..product_options import product_options
 
 if TYPE_CHECKING:
     from ...tin import Survey
 
 _MOST_CELLS = 1_000_000
 _UNNAMED = "Terrain surface"
+_PREVIEW = "terrain.viewer.presentation.preview"
 
 
 @parsed
@@ -46,26 +39,14 @@ def _parse_size(flag: str, value: str) -> tuple[int, int]:
 @command
 @input_files("files")
 @picture_option("Page (.html) or picture (.png, .jpg, .tif) to write instead of opening a window.")
-@number_option("--exaggeration", "FACTOR", "Vertical exaggeration; chosen if absent.")
-@click.option("--edges", is_flag=True, help="Draw the edges of the triangles.")
-@click.option(
-    "--lines/--no-lines",
-    default=True,
-    show_default=True,
-    help="Draw breaklines and rings.",
-)
+@product_options(_PREVIEW, "exaggeration edges lines")
 @click.option("--top", is_flag=True, help="View from vertically above, north up.")
 @file_option(
     "--ortho",
     "Orthophoto to drape over the surface: a GeoTIFF in any CRS, or another georeferenced image.",
     type=INPUT,
 )
-@number_option(
-    "--azimuth", "DEGREES", "Direction from the surface to the viewer, clockwise from north."
-)
-@number_option(
-    "--tilt", "DEGREES", "Elevation angle of the viewer above the horizon; 90 is from above."
-)
+@product_options(_PREVIEW, "azimuth tilt")
 @click.option(
     "--full",
     is_flag=True,
@@ -79,23 +60,7 @@ def _parse_size(flag: str, value: str) -> tuple[int, int]:
     callback=_parse_size,
     help="Pixels of a picture or window; default 1600x1000.",
 )
-@number_option("--dpi", "NUMBER", "Dots per inch written to a picture, for printing.")
-@numbers_option(
-    "--sun",
-    "AZIMUTH,ALTITUDE",
-    "Direction of the light in a picture, degrees from north and above the horizon; "
-    "default 315,45.",
-)
-@click.option(
-    "--background",
-    metavar="COLOR",
-    help="white, black, light, dark, or as #e8edf2; default white.",
-)
-@numbers_option(
-    "--elevations", "LOW,HIGH", "Range of the tints in a picture; default that of the surface."
-)
-@choice_option("--tint", Tint, "Quantity shown by the colours of a picture.", default="elevation")
-@number_option("--contours", "INTERVAL", "Draw contours in a picture, in the unit of elevations.")
+@product_options(_PREVIEW, "dpi sun background elevations tint contours")
 @surface_options(READING, TRIANGULATING, CONSOLE)
 def view(
     files: tuple[Path, ...],
@@ -126,6 +91,7 @@ def view(
     sample = None if survey is None else _describe_sample(survey)
     drawing["view"] = "top" if drawing.pop("top") else "oblique"
     drawing["title"] = drawing["title"] or make_title(files[0])
+    drawing = {name: value for name, value in drawing.items() if value is not None}
     if sample is not None:
         job.console.summarise([("Sampled", f"{sample} are shown; --full shows all")])
         drawing["title"] = f"{drawing['title'] or _UNNAMED} ({sample})"

@@ -1,4 +1,4 @@
-"""Relief: the range of elevations that a picture shows."""
+"""Relief: the range of elevations that a picture shows, and how much it is exaggerated."""
 
 from __future__ import annotations
 
@@ -8,6 +8,8 @@ import numpy as np
 
 if TYPE_CHECKING:
     from ...base.arrays import BoolArray, Float64Array
+    from ...base.georeference.units import Ground
+    from ...tin import TIN
 
 _LEAST_POINTS = 20
 """Of fewer points none is said to be far off the others."""
@@ -17,6 +19,11 @@ _MOST_SHARE = 0.01
 
 _GAP = 4.0
 """Ranges of the others that a point lies beyond them, at least, to be far off."""
+
+RELIEF_SHARE = 0.1
+"""Least share of the extent that the relief takes in a picture; below, heights are exaggerated."""
+
+_EXAGGERATIONS = (1.0, 1.5, 2.0, 3.0, 5.0, 10.0, 15.0, 20.0, 30.0, 50.0, 100.0)
 
 
 class ElevationRange(NamedTuple):
@@ -60,3 +67,33 @@ def _count_beyond(steps: Float64Array, gap: float) -> int:
     """Return how many of the outermost points lie beyond the first step outwards above a gap."""
     is_wide = steps > gap
     return len(steps) - int(is_wide.argmax()) if is_wide.any() else 0
+
+
+def choose_exaggeration(tin: TIN, ground: Ground, shown: ElevationRange) -> float:
+    """Choose a round vertical exaggeration that shows the relief.
+
+    It is the smallest of 1, 1.5, 2, 3, 5, 10, 15, ... 100 that lifts the relief to a tenth of the
+    extent (and so to at most a fifth, if 1 is not enough); 1 for level ground. Elevations far off
+    the others do not count.
+    """
+    relief = (shown.high - shown.low) * ground.scale[2]
+    return round_exaggeration(RELIEF_SHARE * measure_extent(tin, ground), relief)
+
+
+def round_exaggeration(wanted: float, relief: float) -> float:
+    """Return the smallest round exaggeration that makes a relief as high as is wanted."""
+    if relief == 0:
+        return 1.0
+    factors = (factor for factor in _EXAGGERATIONS if factor * relief >= wanted)
+    return next(factors, _EXAGGERATIONS[-1])
+
+
+def measure_relief(tin: TIN, ground: Ground) -> ElevationRange:
+    """Return the range of a TIN's elevations, without those that are far off the others."""
+    extent = measure_extent(tin, ground) / ground.scale[2]
+    return find_elevation_range(tin.points[:, 2], extent)
+
+
+def measure_extent(tin: TIN, ground: Ground) -> float:
+    """Return the greater of a TIN's extents to the east and to the north, on the ground."""
+    return float((np.ptp(tin.points[:, :2], axis=0) * ground.scale[:2]).max())
