@@ -256,6 +256,23 @@ def test_plans_do_nothing(command, lidar, here, commands):
     assert list(here.iterdir()) == []
 
 
+def test_files_are_read_in_place(lidar, here):
+    from support.sources_in_place import write_octree
+
+    octree = write_octree(here / "a.copc.laz")
+    options = ["--classes", "2", "--spacing", "5", "--workers", "1", "-o"]
+    planned = json.loads(
+        run("raster", octree, *options, "out.tif", "--in-place", "--plan", "--json").stdout
+    )
+    assert (planned["files_in_place"], planned["files_copied"], planned["disk_bytes"]) == (1, {}, 0)
+    done = run("raster", lidar, *options, "out.tif", "--in-place", "--plan")
+    assert '0 files; copied: 3, "has no octree (COPC)"' in " ".join(done.output.split())
+    for name, more in (("a.tif", []), ("b.tif", ["--in-place"])):
+        done = run("raster", octree, *options, name, "--tiles", "3", *more)
+        assert done.exit_code == 0, done.output
+    assert (here / "a.tif").read_bytes() == (here / "b.tif").read_bytes()
+
+
 def test_tiles_are_chosen_where_memory_is_short(lidar, here, monkeypatch):
     monkeypatch.setattr(tiling, "_SMALL", 0)
     options = [lidar, "--classes", "2", *COMMANDS["volume"]]

@@ -88,11 +88,10 @@ def examine(case: Case) -> str:
             for k, part in enumerate(parts)
         ]
         cloud_of_files = ts.tiles(files, duplicates=case["duplicates"], **case["lines"])
-        return compare(case, tin, cloud_of_files, Path(folder))
+        return _compare(case, tin, cloud_of_files, Path(folder))
 
 
-def compare(case: Case, tin: ts.TIN, cloud: ts.TiledPoints, folder: Path) -> str:
-    """Require what tiles make to be what memory makes; tell how many products there are."""
+def _compare(case: Case, tin: ts.TIN, cloud: ts.TiledPoints, folder: Path) -> str:
     low, high = tin.points[:, 2].min(), tin.points[:, 2].max()
     level = float(low + (high - low) * 0.4)
     bounds = tin.bounds

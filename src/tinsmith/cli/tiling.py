@@ -237,7 +237,7 @@ def add_plan(facts: Facts, plan: Plan) -> None:
 def _add_places(facts: Facts, plan: Plan) -> None:
     """Add how many files are read in place, and why others are not."""
     text = counted(plan.in_place, "file")
-    others = [f"{counted(count, 'file')} {why}" for why, count in plan.copied.items()]
+    others = [f'{count:,}, "{why}"' for why, count in plan.copied.items()]
     text = f"{text}; copied: {'; '.join(others)}" if others else text
     facts.add("In place", text, files_in_place=plan.in_place, files_copied=plan.copied)
 
