@@ -11,20 +11,19 @@ import time
 import traceback
 import warnings
 from collections.abc import Callable, Iterator
-from dataclasses import replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any, NamedTuple
 
 import numpy as np
 from support.many_files import Shuffled
+from support.sources_in_place import write_octree
 
 import tinsmith as ts
 
 from .campaign import Campaign, Case
 
 CRS = "EPSG:32616"
-LINE = [[500_001.0, 4_000_002.0], [500_090.0, 4_000_070.0]]
 VICTIMS = ("group", "group", "parent", "worker")
 _POLL = 0.001
 _PATIENCE = 400.0
@@ -39,6 +38,13 @@ class Product(NamedTuple):
     write: Callable[..., Path]
 
 
+def _cut(cloud: ts.TiledPoints, path: Path, **way: Any) -> Path:
+    bounds = cloud.bounds
+    assert bounds is not None
+    corners = np.add([[1.0, 2.0], [90.0, 70.0]], [bounds.xmin, bounds.ymin])
+    return cloud.profile(path, corners, **way)
+
+
 def _classify(cloud: ts.TiledPoints, path: Path, **way: Any) -> Path:
     return cloud.ground(path.parent / "ground", building=10.0, **way)
 
@@ -51,7 +57,7 @@ PRODUCTS = {
     "contours": Product("out.gpkg", lambda c, path, **way: c.contours(path, 1.0, **way)),
     "bands": Product("out.fgb", lambda c, path, **way: c.contours(path, 2.0, bands=True, **way)),
     "volume": Product("out.csv", lambda c, path, **way: c.volume(path, base=10.0, **way)),
-    "profile": Product("out.csv", lambda c, path, **way: c.profile(path, LINE, **way)),
+    "profile": Product("out.csv", _cut),
     "surface": Product("out", lambda c, path, **way: c.build(path, **way)),
     "3dtiles": Product("out", lambda c, path, **way: c.write(path, node_points=500, **way)),
     "ground": Product("ground", _classify),
@@ -84,8 +90,10 @@ def examine(case: Case) -> str:
         for one in ("inputs", "tmp", "whole", "killed"):
             (folder / one).mkdir()
         is_there = bool(case.get("in_place")) and case["product"] != "ground"
-        write = _write_raster if is_there else _write_inputs
-        write(folder / "inputs", case["seed"])
+        if is_there:  # an octree: GDAL, once used, does not work in processes that are forked
+            write_octree(folder / "inputs" / "all.copc.laz", 3_000, seed=case["seed"])
+        else:
+            _write_inputs(folder / "inputs", case["seed"])
         product = PRODUCTS[case["product"]]
         asked = {"tiles": case["tiles"], "in_place": is_there}
         alone = _start(product, folder, "whole", asked | {"executor": Shuffled(case["seed"])})
@@ -113,15 +121,6 @@ def _write_inputs(folder: Path, seed: int) -> None:
         ts.write(ts.Survey(points=points[k::3], crs=CRS), folder / f"part{k}.laz")
 
 
-def _write_raster(folder: Path, seed: int) -> None:
-    """Write as many points as cells of one raster, which is read in place."""
-    rng = np.random.default_rng(seed)
-    row, column = np.mgrid[:50, :60]
-    cells = 10 + 4 * np.sin(column / 9) + rng.normal(0, 0.05, row.shape)
-    grid = ts.Grid(ts.Bounds(499_990.0, 3_999_990.0, 500_110.0, 4_000_090.0), row.shape, 2.0)
-    ts.write(ts.Raster({"elevation": cells}, grid, crs=CRS), folder / "cells.tif")
-
-
 def _start(product: Product, folder: Path, name: str, way: dict[str, Any]) -> int:
     """Start a run in a process group of its own; what is raised lies in a file afterwards."""
     in_place = way.pop("in_place")
@@ -134,9 +133,8 @@ def _start(product: Product, folder: Path, name: str, way: dict[str, Any]) -> in
         os.dup2(os.open(os.devnull, os.O_WRONLY), 2)
         os.environ["TMPDIR"] = tempfile.tempdir = str(folder / "tmp")
         warnings.simplefilter("ignore")
-        cloud = ts.tiles(next((folder / "inputs").glob("*.tif"), folder / "inputs"))
-        assert not in_place or replace(cloud, in_place=True).plan().in_place
-        cloud = replace(cloud, in_place=in_place)
+        cloud = ts.tiles(folder / "inputs", in_place=in_place)
+        assert bool(cloud.plan().in_place) == in_place
         product.write(cloud, folder / name / product.name, **way)
         code = 0
     except BaseException:
