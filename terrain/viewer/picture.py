@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from contextlib import contextmanager
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -39,7 +39,7 @@ def write_picture(
     opengl.require_opengl()
     with keep_vtk_plain():
         picture = _render(make_scene(tin, options, ortho))
-    resolution = {} if options.dpi is None else {"dpi": (options.dpi, options.dpi)}
+    resolution: dict[str, Any] = {} if options.dpi is None else {"dpi": (options.dpi, options.dpi)}
     with replacing_path(path) as beside:
         picture.save(beside, quality=_JPEG_QUALITY, **resolution)
 

@@ -97,7 +97,7 @@ def _read_keywords(node: Any, text: str, path: Path, loader: Any) -> list[tuple[
     (module,) = re.findall(rf"^from \.(\w+) import .*\b{name}\b", text, re.MULTILINE)
     classes: Any = ast.parse(loader.get_data(str(path.with_stem(module)))).body
     (found,) = (one for one in classes if getattr(one, "name", "") == name)
-    fields = (one for one in found.body if isinstance(one, ast.AnnAssign))
+    fields: list[Any] = [one for one in found.body if isinstance(one, ast.AnnAssign)]
     return [(one.target.id, one.annotation) for one in fields]
 
 
