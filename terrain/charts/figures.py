@@ -122,9 +122,6 @@ def _add_below(figure: Any, share: float) -> None:
 
 # ---------------------------------------------------------------- files
 
-PICTURE_SUFFIXES = (".png",)
-"""File name endings of what :func:`save_figure` writes."""
-
 
 def save_figure(figure: Any, path: Path, *, dpi: int) -> None:
     """Write a figure of matplotlib, whole or not at all, with no version in its bytes."""

@@ -1,6 +1,6 @@
 """Drawing: what pages, plans, charts and notebooks share: lines, numbers, 3D models, HTML."""
 
-from .arguments import UNTITLED, parse_text, parse_title, require_features
+from .arguments import PICTURE_SUFFIXES, UNTITLED, parse_text, parse_title, require_features
 from .furniture import NORTH_ARROW, Legend, make_legend, make_scale_bar
 from .lettering import Lettering, fit_text
 from .linework import (
@@ -34,6 +34,7 @@ __all__ = [
     "EDGE_KINDS",
     "LINE_STYLES",
     "NORTH_ARROW",
+    "PICTURE_SUFFIXES",
     "STEEPNESS",
     "TRIANGULATIONS",
     "UNTITLED",

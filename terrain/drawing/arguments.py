@@ -1,4 +1,4 @@
-"""Arguments of charts: titles, and features that a certain function returned."""
+"""Arguments of charts: titles, and features that a certain function returned; names of files."""
 
 from __future__ import annotations
 
@@ -13,6 +13,8 @@ if TYPE_CHECKING:
 
 UNTITLED = "Terrain surface"
 """Title of what nobody gave one."""
+PICTURE_SUFFIXES = (".png",)
+"""File name endings of figures that can be written; asked for where nothing may be drawn."""
 
 
 def parse_title(title: Any, usual: str) -> str:

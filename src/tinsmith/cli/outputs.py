@@ -171,21 +171,16 @@ def _compare_paths(
 def _find_kind(path: Path, writing: Writing, kinds: Sequence[str]) -> str:
     """Return what a suffix, or a format that is named, is meant for."""
     from ..io.registry.lookup import list_writers
+    from ..terrain.drawing import PICTURE_SUFFIXES
 
     name = writing.output_format
     suffix = path.suffix.lower() if name is None else f".{name.strip().lower().lstrip('.')}"
-    if "picture" in kinds and _is_picture(suffix):
+    if suffix in PICTURE_SUFFIXES and "picture" in kinds:
         return "picture"
     for kind in ("Table", "Features", "TIN"):
         if kind in kinds and list_writers(path, name, kind):
             return kind
     return next(kind for kind in kinds if kind != "picture")  # whose refusal names what it takes
-
-
-def _is_picture(suffix: str) -> bool:
-    from ..terrain.charts import PICTURE_SUFFIXES  # what draws nothing does not load charts
-
-    return suffix in PICTURE_SUFFIXES
 
 
 def require_format(flag: str, name: str | None) -> None:
@@ -264,7 +259,7 @@ def require_picture(
 
     ``place`` is the option that names it; ``suffixes`` are those of pictures if none are given.
     """
-    from ..terrain.charts import PICTURE_SUFFIXES
+    from ..terrain.drawing import PICTURE_SUFFIXES
 
     require_separate(inputs, [Named(path, place)])
     known = suffixes or PICTURE_SUFFIXES
