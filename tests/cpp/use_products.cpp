@@ -284,16 +284,16 @@ class Drainage {
     const hydrology::Strips cut = strips();
     const hydrology::Nodes all = nodes();
     hydrology::StripLinks(plane_.falls, plane_.bases.data(), filling_, cut, all)
-        .run(nexts_.data(), uppers_.data(), pulse_);
+        .run(nexts_.data(), uppers_.data(), team_);
   }
 
   void link_vertices() {
     const auto is_boundary = std::make_unique<bool[]>(vertex_count());
     std::fill_n(is_boundary.get(), 4, true);  // the corners of the square come first
-    const hydrology::ExitTable exits(plane_.falls, filling_, is_boundary.get(), pulse_);
+    const hydrology::ExitTable exits(plane_.falls, filling_, is_boundary.get(), team_);
     const hydrology::Nodes all = nodes();
     undecided_ = hydrology::VertexLinks(plane_.falls, plane_.bases.data(), filling_, exits, all)
-                     .run(&nexts_[strip_count_], &uppers_[strip_count_], pulse_);
+                     .run(&nexts_[strip_count_], &uppers_[strip_count_], team_);
   }
 
   const FallingPlane plane_;

@@ -120,10 +120,11 @@ class MeshArrays {
     const WithGhost<Vertex> sweep_of = find_sweep(grid, team);
     CanonicalOrder order(grid, mesh_.swept(sweep_of.begin()), team);
     if (!order.count()) return;
-    triangle_count = static_cast<std::size_t>(order.triangles());
-    corners = streamed_array<std::int32_t>(3 * triangle_count);
-    neighbors = streamed_array<std::int32_t>(3 * triangle_count);
-    fixed = streamed_array<bool>(3 * triangle_count);
+    triangle_count = static_cast<std::uint32_t>(order.triangles());
+    const std::size_t size = 3 * std::size_t{triangle_count};
+    corners = streamed_array<std::int32_t>(size);
+    neighbors = streamed_array<std::int32_t>(size);
+    fixed = streamed_array<bool>(size);
     order.write(Triangles{corners.get(), neighbors.get()},
                 [this](std::int64_t t, std::uint32_t first, std::size_t entry) {
                   const HalfEdge e = half_edge(triangle_numbered(t), first);
@@ -132,16 +133,16 @@ class MeshArrays {
                   fixed[entry + 2] = mesh_.is_fixed(Mesh::before(e));
                 });
     team.run([&](int member) {
-      const auto entries = static_cast<std::int64_t>(3 * triangle_count);
-      const std::int64_t begin = entries * member / team.size();
-      const std::int64_t end = entries * (member + 1) / team.size();
-      for (std::int64_t i = begin; i < end; ++i) corners[i] = number(grid.rows()[corners[i]]);
+      const Range own = part_of(triangle_count, member, team.size());
+      for (std::int64_t i = std::int64_t{3} * own.begin; i < std::int64_t{3} * own.end; ++i) {
+        corners[i] = number(grid.rows()[corners[i]]);
+      }
     });
   }
 
   StreamedArray<std::int32_t> corners, neighbors;
   StreamedArray<bool> fixed;
-  std::size_t triangle_count = 0;
+  std::uint32_t triangle_count = 0;
 
  private:
   void gather_vertices() {
