@@ -299,7 +299,7 @@ def test_tasks_survive_their_file(tmp_path):
 @pytest.mark.slow
 def test_every_tool_holds_the_lines():
     outcome = lines.run(1_000, names=["raster lines", "nested rings"], repeats=1)
-    present = kernel.find_tools(ALL_LINE_TOOLS, LINE_TOOLS, "constrained", Outcome())
+    present = kernel.find_tools(ALL_LINE_TOOLS, LINE_TOOLS, "lines", Outcome())
     assert [r.tool for r in outcome.results] == 2 * present
     assert {OURS} <= set(present)
     for result in outcome.results:
