@@ -24,33 +24,16 @@ PALE = 0.3
 TICKS = (1.0, 2.0, 5.0)
 """Leads of the numbers below the axis."""
 
+_HOLLOW = {"facecolors": "none"}
 STYLES: dict[str, dict[str, Any]] = {
     OURS: {"color": "#0b5fa5", "marker": "o", "s": 75, "zorder": 5},
-    KERNEL: {"color": "#0b5fa5", "marker": "o", "s": 40, "zorder": 5, "facecolors": "none"},
+    KERNEL: {"color": "#0b5fa5", "marker": "o", "s": 40, "zorder": 5, **_HOLLOW},
     ALL_CORES: {"color": "#2aa198", "marker": "o", "s": 75, "zorder": 5},
-    KERNEL_ALL_CORES: {
-        "color": "#2aa198",
-        "marker": "o",
-        "s": 40,
-        "zorder": 5,
-        "facecolors": "none",
-    },
+    KERNEL_ALL_CORES: {"color": "#2aa198", "marker": "o", "s": 40, "zorder": 5, **_HOLLOW},
     CGAL: {"color": "#d1495b", "marker": "D", "s": 42, "zorder": 4},
-    CGAL_INDICES: {
-        "color": "#d1495b",
-        "marker": "D",
-        "s": 30,
-        "zorder": 4,
-        "facecolors": "none",
-    },
+    CGAL_INDICES: {"color": "#d1495b", "marker": "D", "s": 30, "zorder": 4, **_HOLLOW},
     DELAUNAY32: {"color": "#7b3f9e", "marker": "D", "s": 42, "zorder": 4},
-    DELAUNAY32_ALL_CORES: {
-        "color": "#7b3f9e",
-        "marker": "D",
-        "s": 30,
-        "zorder": 4,
-        "facecolors": "none",
-    },
+    DELAUNAY32_ALL_CORES: {"color": "#7b3f9e", "marker": "D", "s": 30, "zorder": 4, **_HOLLOW},
     "Triangle": {"color": "#e08e1b", "marker": "^", "s": 46, "zorder": 3},
     "GEOS": {"color": "#66a182", "marker": "s", "s": 36, "zorder": 3},
     "SciPy": {"color": "#8d6a9f", "marker": "v", "s": 46, "zorder": 3},

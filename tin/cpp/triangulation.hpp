@@ -83,10 +83,7 @@ class Triangulator {
     if (grid.count() < 3) return;
     rows_of_ = grid.rows();
     if (options_.keeps_sweep) keep_sweep(grid);
-    if (!is_worth_growing(grid)) {
-      if (!is_flat(grid)) insert_all(grid);
-      return;
-    }
+    if (!is_worth_growing(grid)) return insert_all(grid);
     std::vector<Vertex> hull = HullFinder(grid, team_).find();
     if (hull.empty() || !team_.keeps_going(0)) return;
     result_.triangle_count = triangle_count(grid.count(), static_cast<std::int64_t>(hull.size()));
@@ -178,15 +175,6 @@ class Triangulator {
   bool is_worth_growing(const PointGrid& grid) const {
     if (!may_insert()) return options_.method == Method::kGrowth;
     return grid.count() <= kLeastToInsert || !HullFinder::is_of_curve(grid);
-  }
-
-  // Whether all points are in line.
-  static bool is_flat(const PointGrid& grid) {
-    const Point first = grid.point(Vertex{0}), last = grid.point(Vertex{grid.count() - 1});
-    for (const Vertex v : Ids<Vertex>(grid.count())) {
-      if (orientation(first, last, grid.point(v)) != 0) return false;
-    }
-    return true;
   }
 
   bool may_insert() const {

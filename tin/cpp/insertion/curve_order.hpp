@@ -26,9 +26,12 @@ namespace tinsmith {
 
 class CurveOrder {
  public:
-  // One part a thread of the team, or fewer. The points must not all be collinear.
+  // One part a thread of the team, or fewer.
   CurveOrder(const PointGrid& grid, Team& team)
-      : grid_(grid), team_(team), sweep_of(grid.count()), points(grid.count()) {}
+      : sweep_of(grid.count()), points(grid.count()), grid_(grid), team_(team) {}
+
+  WithGhost<Vertex> sweep_of;
+  WithGhost<Point> points;
 
   // Returns false if the team is stopped.
   bool put_in_order() {
@@ -47,7 +50,7 @@ class CurveOrder {
     return !team_.is_stopped();
   }
 
-  // None of them is collinear.
+  // None of them is collinear; there is none if all points are.
   const std::vector<Range>& parts() const { return parts_; }
 
   // Along the side that parts divide.
@@ -63,11 +66,6 @@ class CurveOrder {
   std::vector<double> cuts_;  // a part begins at each, but for the first
   std::vector<Range> parts_;
 
- public:
-  WithGhost<Vertex> sweep_of;
-  WithGhost<Point> points;
-
- private:
   void find_cuts() {
     const std::int32_t count = grid_.count();
     const std::int32_t parts = std::min(team_.size(), count / kLeastInPart);
@@ -127,8 +125,7 @@ class CurveOrder {
       joined.push_back({begin, part.end});
       begin = part.end;
     }
-    if (joined.empty()) joined.push_back({0, 0});
-    joined.back().end = grid_.count();
+    if (!joined.empty()) joined.back().end = grid_.count();
     parts_ = joined;
   }
 

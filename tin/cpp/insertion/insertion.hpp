@@ -26,13 +26,12 @@ namespace tinsmith {
 
 class Insertion {
  public:
-  // The points must not all be collinear.
   Insertion(const PointGrid& grid, Team& team)
       : team_(team), count_(grid.count()), order_(grid, team) {}
 
-  // Returns false if the team is stopped.
+  // Returns false if the team is stopped, or all points are collinear.
   bool run() {
-    if (!team_.keeps_going(0) || !order_.put_in_order()) return false;
+    if (!team_.keeps_going(0) || !order_.put_in_order() || order_.parts().empty()) return false;
     triangles_ = scratch_array<GhostTriangle>(triangle_count());
     team_.expect(count_);
     if (!insert_parts() || !merge_parts()) return false;
