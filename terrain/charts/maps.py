@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ...base import optional
-from ...base.georeference.axes import label_axes
+from ...base.georeference import label_axes
 from ...base.georeference.units import find_ground
 from ..drawing import choose_ticks
 from ..gridding.shading import hillshade

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 from ...base import optional
 from ...base.checks import as_flag, as_floats, require_tin
 from ...base.errors import OptionError
-from ...base.georeference.axes import find_axes
+from ...base.georeference import find_axes
 from ...base.georeference.units import find_ground
 from ...base.products import product
 from ..drawing import LINE_STYLES, find_line_edges, palette

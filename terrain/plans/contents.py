@@ -10,8 +10,7 @@ import numpy as np
 
 from ...base.checks import is_finite_number
 from ...base.errors import OptionError
-from ...base.georeference import require_same_crs
-from ...base.georeference.axes import label_axes
+from ...base.georeference import label_axes, require_same_crs
 from ...base.sentences import counted
 from ...tin.topology import find_offsets
 from ..drawing import EDGE_KINDS, LineEdges, find_line_edges, join_edges, round_down

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from ...base.georeference.axes import label_axes
+from ...base.georeference import label_axes
 from ..drawing import palette, round_down
 from .canvas import Pen
 from .clipping import clip_paths, join_paths

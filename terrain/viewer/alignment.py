@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from ...base.checks import require_tin
 from ...base.errors import OptionError
-from ...base.georeference import agree
-from ...base.georeference.axes import find_axes
+from ...base.georeference import agree, find_axes
 from ...tin import TIN
 from ..drawing import draw_north_up
 

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ...base.errors import ReadError
-from ...base.georeference.axes import find_axes
+from ...base.georeference import find_axes
 
 if TYPE_CHECKING:
     import os

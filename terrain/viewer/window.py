@@ -9,7 +9,7 @@ import numpy as np
 
 from ...base import optional
 from ...base.errors import TinsmithError
-from ...base.georeference.axes import label_axes
+from ...base.georeference import label_axes
 from ...base.policies import Tint
 from ..drawing import add_polylines, choose_origin, palette, round_down
 from ..sections import profile

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ....base.georeference.axes import find_axes
+from ....base.georeference import find_axes
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ....base.georeference.axes import find_axes
+from ....base.georeference import find_axes
 from ....base.results.columns import unit_text
 from ....base.sentences import counted
 from ..north_up import draw_north_up

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ....base.checks import as_floats
-from ....base.georeference.axes import find_axes
+from ....base.georeference import find_axes
 from ....base.sentences import counted
 from ....tin.report import word_reason
 from .. import palette

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from ....base.errors import OptionError
-from ....base.georeference.axes import label_axes
+from ....base.georeference import label_axes
 from ....base.georeference.units import find_ellipsoid
 from ....base.sentences import counted
 from ...drawing import (

@@ -9,6 +9,7 @@ from .agreement import (
     find_plane_units,
     require_same_crs,
 )
+from .axes import find_axes, label_axes
 from .units import find_scales
 
 __all__ = [
@@ -17,7 +18,9 @@ __all__ = [
     "Referenced",
     "agree",
     "describe_unknown",
+    "find_axes",
     "find_plane_units",
     "find_scales",
+    "label_axes",
     "require_same_crs",
 ]

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ...base.crs import assume_elevation_unit
-from ...base.georeference.axes import find_axes
+from ...base.georeference import find_axes
 from ...base.sentences import counted
 from ...io.reprojection.transformation import is_geographic, length_unit
 from ...terrain import slope
