@@ -4,6 +4,7 @@ from ..base.errors import FormatError as FormatError
 from ..base.errors import OptionError as OptionError
 from ..base.errors import ReadError as ReadError
 from ..base.errors import WriteError as WriteError
+from .alignments import read_alignment as read_alignment
 from .field_survey import field_codes as field_codes
 from .field_survey.field_codes import lines_from_codes as lines_from_codes
 from .mesh.libraries import from_mesh as from_mesh

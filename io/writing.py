@@ -12,6 +12,7 @@ from ..base.plug_ins import describe_failure
 from ..base.products import product
 from ..base.progress import Progress
 from ..base.results import Features, Raster, Table
+from ..terrain.alignments import Alignment
 from ..tin import Surface, Survey
 from .registry.format import require_options, takes_progress
 from .registry.lookup import find_writer
@@ -23,7 +24,14 @@ if TYPE_CHECKING:
 
     from .registry.format import Format
 
-_KINDS = {"TIN": Surface, "Survey": Survey, "Features": Features, "Raster": Raster, "Table": Table}
+_KINDS = {
+    "TIN": Surface,
+    "Survey": Survey,
+    "Features": Features,
+    "Raster": Raster,
+    "Table": Table,
+    "Alignment": Alignment,
+}
 
 
 @product
@@ -39,7 +47,7 @@ def write(
 
     Parameters
     ----------
-    obj : TIN, Survey, Features, Raster or Table
+    obj : TIN, Survey, Features, Raster, Table or Alignment
     path : path-like
     format : str, optional
         Name of a format, to choose it whatever the suffix.
@@ -111,7 +119,7 @@ def _call_writer(
 
 
 def find_kind(obj: object, path: Path) -> str:
-    """Return the name of what is to be written, "TIN", "Survey", "Features", "Raster" or "Table".
+    """Return the name of what is to be written, "TIN", "Survey", "Table" or the like.
 
     Raises
     ------
@@ -123,6 +131,6 @@ def find_kind(obj: object, path: Path) -> str:
             return name
     raise FormatError(
         f"Cannot write '{path}': it is of type {type(obj).__name__}, and neither a TIN nor a "
-        "Survey, Features, Raster or Table.",
+        "Survey, Features, Raster, Table or Alignment.",
         known=tuple(_KINDS),
     )

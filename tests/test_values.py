@@ -22,6 +22,7 @@ WORKED_ON = {
     "io.lidar.reading._Seen", "io.vector.parquet.streaming._Missing",
     "io.lidar.selection.Tally", "io.cad.landxml.content.Content", "io.cad.landxml.content.Line",
     "io.cad.landxml.content.Points", "io.cad.landxml.content.Surface",
+    "io.cad.landxml.alignment_elements.ElementReader", "io.cad.landxml.alignment_nodes.Node",
     "io.lidar.labelling.LabelledFile", "terrain.ground_filter.returns.Candidates",
     "terrain.plans.mapping.Drawn", "tin.screening.heights._Search",
 }  # fmt: skip

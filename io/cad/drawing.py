@@ -29,6 +29,7 @@ if TYPE_CHECKING:
 
     from ...base.arrays import AnyArray, Float64Array
     from ...base.crs import UnitLike
+    from ...base.georeference import Referenced
     from ...base.policies import FacePolicy
     from ...base.results import Features
     from ...tin import TIN, Survey
@@ -238,7 +239,7 @@ def _iterate_parts(features: Features) -> Iterator[tuple[int, int, int]]:
 
 
 def choose_length_unit(
-    obj: TIN | Survey | Features,
+    obj: Referenced,
     unit: UnitLike | None,
     *,
     is_known: Callable[[Unit], bool],
@@ -248,7 +249,7 @@ def choose_length_unit(
 
     Parameters
     ----------
-    obj : TIN, Survey or Features
+    obj : TIN, Survey, Features or Alignment
     unit : Unit or str, optional
         Declared by the caller, where the CRS does not tell.
     is_known : callable

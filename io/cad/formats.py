@@ -19,6 +19,7 @@ def _make(name: str, description: str, *suffixes: str, **more: Any) -> Format:
 FORMATS = (
     _make(
         *("landxml", "LandXML (Civil 3D, Carlson, 12d, Trimble)", ".xml", ".landxml"),
+        writes=(*SURFACES, "Features", "Alignment"),
         losses="One unit for coordinates and elevations; of a survey attributes other than number, "
         "description and code, and erased areas; notes and report; vertices of no "
         "triangle.",

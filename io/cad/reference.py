@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from ...base.crs import CRS, Unit
-from ...base.errors import OptionError, ReadError
+from ...base.errors import CrsError, OptionError, ReadError
 from ...base.sentences import FILE
 from ...tin.screening.area_of_use import AreaOfUse
 from ..reprojection.placement import settle_unit
@@ -79,6 +79,20 @@ class Measures:
             rows[:, :2] *= self.scale
             rows[:, 2:] *= self.elevation_scale
         return rows
+
+
+def require_own_crs(stated: Stated, declared: Declared) -> None:
+    """Refuse to reproject an alignment.
+
+    Raises CrsError if the caller names another CRS than the file.
+    """
+    own, wanted = stated.crs, declared.crs
+    if own is not None and wanted is not None and not own.horizontal.is_same(wanted.horizontal):
+        raise CrsError(
+            f"{FILE} is in {own.label}, and {wanted.label} is another CRS: an alignment is not "
+            "reprojected, since its arcs would be no arcs there.",
+            crs=wanted,
+        )
 
 
 def choose_measures(stated: Stated, declared: Declared, *, sample: Float64Array) -> Measures:

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 SURFACES = ("TIN", "Survey")
 """What triangulations and their points can be written as."""
 
-KINDS = ("TIN", "Survey", "Features", "Raster", "Table")
+KINDS = ("TIN", "Survey", "Features", "Raster", "Table", "Alignment")
 """What files can hold, by the names of the classes."""
 
 Loss = Literal[
@@ -60,7 +60,7 @@ class Format:
         ``"module:function"``, of functions as the notes describe them.
     reads, writes : tuple of str
         What the reader gives, what the writer takes: "TIN", "Survey", "Features", "Raster",
-        "Table". Several formats may share a suffix, if they hold different things.
+        "Table", "Alignment". Several formats may share a suffix, if they hold different things.
     precision : str
         To which digit coordinates come back from a file that was written; one sentence.
     rounding, relative_rounding : float

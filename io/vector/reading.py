@@ -29,6 +29,7 @@ from .parts import Part, Wanted, find_elevation_factor, split_into_parts
 if TYPE_CHECKING:
     import os
     from collections.abc import Iterator, Sequence
+    from pathlib import Path
 
     from ...base.arrays import Float64Array
     from ...base.crs import CrsLike, UnitLike
@@ -170,6 +171,20 @@ def _describe_unused(features: Layer, parts: Sequence[Part]) -> list[str]:
         f"'{features.path.name}': {count} {lines} from the surface, and not from the column "
         f"'{columns[0]}'; if these are contours, ts.from_contours (--from-contours) reads it."
     ]
+
+
+def read_plain_lines(
+    path: Path, *, layer: str | None, crs: CrsLike | None
+) -> tuple[list[Breakline], CRS | None, list[str]]:
+    """Return the lines of a file in the plane, with their names, their CRS, and notes.
+
+    Raises as :func:`read_lines`.
+    """
+    notes: list[str] = []
+    with _reading(path, crs=crs, layer=layer, drape=True, notes=notes) as (features, parts, wanted):
+        names = _find_texts(features, "name")
+        lines = [Breakline(part.coords[:, :2], name=names[part.row]) for part in parts]
+        return lines, wanted.crs or features.crs, [*features.notes, *notes]
 
 
 def read_rings(path: str | os.PathLike[str], **options: Unpack[LineOptions]) -> list[Float64Array]:

@@ -25,6 +25,7 @@ from .io import known_formats as known_formats
 from .io import length_unit as length_unit
 from .io import lines_from_codes as lines_from_codes
 from .io import read as read
+from .io import read_alignment as read_alignment
 from .io import read_lines as read_lines
 from .io import read_points as read_points
 from .io import read_polygons as read_polygons

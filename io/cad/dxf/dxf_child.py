@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 import os
 from array import array
@@ -45,11 +46,14 @@ def prepare() -> None:
     import_module("ezdxf.render")
 
 
-def read_drawing(path: str, *, layer: str | None, texts: bool, tolerance: float | None) -> Answer:
+def read_drawing(
+    path: str, *, layer: str | None, texts: bool, tolerance: float | None, keeps_arcs: bool = False
+) -> Answer:
     """Return the points, faces and lines of the model space, and its texts if they are asked for.
 
     ``layer`` is names or patterns of layers, with commas between; ``tolerance`` is how far a curve
-    may lie from its chords, in the unit of the drawing.
+    may lie from its chords, in the unit of the drawing. With ``keeps_arcs`` arcs in the plane are
+    no chords, but have bulges.
     """
     ezdxf = import_module("ezdxf")
     try:
@@ -65,6 +69,7 @@ def read_drawing(path: str, *, layer: str | None, texts: bool, tolerance: float 
         raise _describe_damage() from error
     try:
         gathered = _Gathered(document, layer, texts=texts, tolerance=tolerance)
+        gathered.bulges = array("d") if keeps_arcs else None
         for entity, own_layer, is_nested in _iterate_entities(document, gathered):
             gathered.take(entity, own_layer, is_nested=is_nested)
         return gathered.answer()
@@ -123,6 +128,8 @@ class _Gathered:
     ) -> None:
         self.document = document
         self.missing_blocks: set[str] = set()
+        self.bulges: array[float] | None = None
+        """Of each vertex of lines: the tangent of a quarter of the angle of the arc behind it."""
         self._patterns = None if layer is None else [
             one.strip().casefold() for one in layer.split(",") if one.strip()
         ]  # fmt: skip
@@ -223,13 +230,16 @@ class _Gathered:
             mesh = import_module("ezdxf.render").MeshBuilder.from_polyface(entity)
             self._add_mesh(mesh.vertices, mesh.faces, number)
             return
-        rows = self._find_rows(entity, kind)
+        arcs = None if self.bulges is None else find_arcs(entity, kind)
+        rows = self._find_rows(entity, kind) if arcs is None else [row for row, _ in arcs]
         if len(rows) < 2:
             self._count_left_out(f"{kind} of one vertex")
             return
         self._n_nested_lines += is_nested
         for row in rows:
             self._lines.extend(row)
+        if self.bulges is not None:
+            self.bulges.extend([0.0] * len(rows) if arcs is None else [bulge for _, bulge in arcs])
         self._lengths.append(len(rows))
         self._line_layers.append(number)
         is_3d = kind == "POLYLINE" and entity.is_3d_polyline
@@ -301,6 +311,8 @@ class _Gathered:
         }
         arrays["faces"] = np.array(self._faces, np.float64).reshape(-1, 4, 3)
         arrays["lengths"] = np.array(self._lengths, np.int64)
+        if self.bulges is not None:
+            arrays["bulges"] = np.array(self.bulges, np.float64)
         arrays["is_flat"] = np.array(self._line_flags, np.uint8)
         arrays["point_layers"] = np.array(self._point_layers, np.int32)
         arrays["face_layers"] = np.array(self._face_layers, np.int32)
@@ -339,6 +351,41 @@ def follow_bulges(entity: Any, kind: str, distance: float) -> list[Row]:
     distance : float
         How far an arc may lie from its chords.
     """
+    rows, elevation = _list_bulged(entity, kind)
+    places: list[tuple[float, float]] = []
+    for (x, y, bulge), (x_end, y_end, _) in itertools.pairwise(rows):
+        places.append((x, y))
+        places += _follow_arc((x, y), (x_end, y_end), bulge, distance)
+    places.append(rows[-1][:2])
+    flat = [(x, y, elevation) for x, y in places]
+    return [place.xyz for place in entity.ocs().points_to_wcs(flat_vectors(flat))]
+
+
+def find_arcs(entity: Any, kind: str) -> list[tuple[Row, float]] | None:
+    """Return the vertices of a plane polyline or arc with the bulges of what follows each.
+
+    None if it is neither, or is not level, so that its arcs are none seen from above.
+    """
+    if kind not in ("ARC", "LWPOLYLINE") and not (kind == "POLYLINE" and entity.is_2d_polyline):
+        return None
+    up = entity.ocs().uz
+    if up.x or up.y:
+        return None
+    if kind == "ARC":
+        angle = math.radians((entity.dxf.end_angle - entity.dxf.start_angle) % 360.0)
+        bulge = math.tan(angle / 4.0)
+        flat = [place.xyz for place in (entity.start_point, entity.end_point)]
+        return [(flat[0], bulge if up.z > 0 else -bulge), (flat[1], 0.0)]
+    rows, elevation = _list_bulged(entity, kind)
+    places = entity.ocs().points_to_wcs(flat_vectors([(x, y, elevation) for x, y, _ in rows]))
+    return [
+        (place.xyz, bulge if up.z > 0 else -bulge)
+        for place, (_, _, bulge) in zip(places, rows, strict=True)
+    ]
+
+
+def _list_bulged(entity: Any, kind: str) -> tuple[list[Row], float]:
+    """Return x, y and bulge of the vertices of a plane polyline, and its elevation."""
     if kind == "LWPOLYLINE":
         rows = [(x, y, bulge) for x, y, bulge in entity.get_points("xyb")]
         elevation, is_closed = float(entity.dxf.elevation), bool(entity.closed)
@@ -351,14 +398,9 @@ def follow_bulges(entity: Any, kind: str, distance: float) -> list[Row]:
         height = entity.dxf.elevation.z if entity.dxf.hasattr("elevation") else 0.0
         elevation = height or entity.vertices[0].dxf.location.z
         is_closed = bool(entity.is_closed)
-    places: list[tuple[float, float]] = []
-    ends = [*rows[1:], rows[0]] if is_closed else rows[1:]
-    for (x, y, bulge), (x_end, y_end, _) in zip(rows, ends, strict=False):
-        places.append((x, y))
-        places += _follow_arc((x, y), (x_end, y_end), bulge, distance)
-    places.append(rows[0][:2] if is_closed else rows[-1][:2])
-    flat = [(x, y, elevation) for x, y in places]
-    return [place.xyz for place in entity.ocs().points_to_wcs(flat_vectors(flat))]
+    if is_closed:
+        rows = [*rows, (*rows[0][:2], 0.0)]
+    return rows, elevation
 
 
 def flat_vectors(rows: list[Row]) -> Any:

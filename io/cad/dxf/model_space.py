@@ -83,7 +83,12 @@ class ModelSpace(NamedTuple):
 
 
 def read_model_space(
-    path: Path, *, layer: str | None = None, texts: bool = False, tolerance: float | None = None
+    path: Path,
+    *,
+    layer: str | None = None,
+    texts: bool = False,
+    tolerance: float | None = None,
+    keeps_arcs: bool = False,
 ) -> ModelSpace:
     """Read the model space of a drawing in a child process.
 
@@ -97,6 +102,9 @@ def read_model_space(
     tolerance : float, optional
         How far a curve may lie from its chords, in the unit of the drawing; default a centimetre,
         or a hundredth of a unit that is not known.
+    keeps_arcs : bool
+        Leave arcs of plane entities as they are: ``bulges`` has the tangent of a quarter of the
+        angle that follows each vertex of lines.
 
     Raises
     ------
@@ -117,7 +125,13 @@ def read_model_space(
     usual = choose_limits(size)
     answer = run_isolated(
         f"{__package__}.dxf_child:read_drawing",
-        {"path": str(path.absolute()), "layer": layer, "texts": texts, "tolerance": tolerance},
+        {
+            "path": str(path.absolute()),
+            "layer": layer,
+            "texts": texts,
+            "tolerance": tolerance,
+            "keeps_arcs": keeps_arcs,
+        },
         path=path,
         limits=Limits(usual.seconds + (_SLOWNESS - 1) * size / 1e6, usual.memory),
     )

@@ -5,6 +5,7 @@ from __future__ import annotations
 from array import array
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
+from xml.sax.saxutils import quoteattr
 
 import numpy as np
 
@@ -128,3 +129,9 @@ class Content:
     points: Points = field(default_factory=Points)
     others: dict[str, int] = field(default_factory=dict)
     """How many elements there are of each kind that is not read, such as plan features."""
+
+
+def quote(text: str) -> str:
+    """Return a text as the value of an attribute, without letters that XML does not have."""
+    plain = "".join(one if one.isprintable() else " " for one in text)
+    return quoteattr(plain.encode("utf-8", "replace").decode("utf-8"))

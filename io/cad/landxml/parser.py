@@ -23,7 +23,9 @@ if TYPE_CHECKING:
     from collections.abc import Callable
     from pathlib import Path
 
-_CHUNK = 1 << 20
+CHUNK = 1 << 20
+"""Bytes that are read at a time."""
+
 _BATCH = 65_536
 _DEEPEST = 200
 """Levels of elements; the schema has about twelve."""
@@ -55,15 +57,15 @@ def parse(path: Path, *, surface: str | int | None = None, points_only: bool = F
     ReadError
         If it is no well-formed XML, no LandXML, or what an element holds is not what it should.
     """
-    parser = _Parser(surface, points_only)
+    parser = Parser(surface, points_only)
     with translate_system_errors(path), path.open("rb") as file:
-        while chunk := file.read(_CHUNK):
+        while chunk := file.read(CHUNK):
             parser.feed(chunk)
         parser.close()
     return parser.content
 
 
-class _Parser:
+class Parser:
     """Handlers of expat, and the element that is open."""
 
     def __init__(self, surface: str | int | None, points_only: bool) -> None:

@@ -8,7 +8,6 @@ that the unit of elevations is not known, stands in elements ``Feature``, as the
 from __future__ import annotations
 
 from typing import IO, TYPE_CHECKING
-from xml.sax.saxutils import quoteattr
 
 import numpy as np
 
@@ -18,10 +17,12 @@ from ....base.errors import FormatError, OptionError
 from ....base.notes import warn
 from ....base.results import Features
 from ....base.sentences import FILE
+from ....terrain.alignments import Alignment
 from ....tin import TIN, Surface, Survey
 from ...registry.losses import select_attributes, warn_of_unknown_elevations
 from ..drawing import choose_length_unit, list_lines, scale_elevations
-from .content import ELEVATION_UNIT, FEATURE, KIND, LINE, PRIORITY, SOURCE, UNKNOWN
+from .alignment_writing import format_alignment
+from .content import ELEVATION_UNIT, FEATURE, KIND, LINE, PRIORITY, SOURCE, UNKNOWN, quote
 from .units import name_unit
 
 if TYPE_CHECKING:
@@ -55,14 +56,14 @@ _SIDES = ((2, 1), (0, 2), (1, 4))
 
 
 def write(
-    obj: TIN | Survey | Features,
+    obj: TIN | Survey | Features | Alignment,
     path: Path,
     *,
     name: str | None = None,
     unit: UnitLike | None = None,
     progress: Tell | None = None,
 ) -> None:
-    """Write a TIN, the points and lines of a survey, or contours and other lines.
+    """Write a TIN, the points and lines of a survey, contours and other lines, or an alignment.
 
     Of a survey points become CgPoints and lines the source data of a surface; of features points
     become CgPoints, lines of one elevation contours, other lines breaklines.
@@ -70,7 +71,7 @@ def write(
     Parameters
     ----------
     name : str, optional
-        Name of the surface; default that of the TIN, else "surface".
+        Name of the surface or alignment; default its own, else "surface" or "alignment".
     unit : Unit or str, optional
         Unit of coordinates and elevations, where the CRS does not tell. Without one the file has
         no units, and programs guess.
@@ -90,6 +91,9 @@ def write(
         If elevations are converted, as LandXML has one unit for all lengths, or attributes are
         left out, or line breaks in texts.
     """
+    if isinstance(obj, Alignment):
+        _write_alignment(obj, path, name, unit)
+        return
     if not isinstance(obj, Surface | Survey | Features):
         raise FormatError(f"Cannot write {FILE}: a {type(obj).__name__} is no surface or survey.")
     if name is None:
@@ -124,6 +128,23 @@ def write(
     warn_of_unknown_elevations(obj)
 
 
+def _write_alignment(
+    alignment: Alignment, path: Path, name: str | None, unit: UnitLike | None
+) -> None:
+    title = name if name is not None else alignment.name.strip() or "alignment"
+    if not isinstance(title, str) or not title.strip():
+        raise OptionError("name", name, "the name of an alignment")
+    along, factor = choose_length_unit(
+        alignment, unit, is_known=lambda one: name_unit(one) is not None, format_name="LandXML"
+    )
+    with replacing(path, binary=False) as file:
+        file.write(_ROOT)
+        _write_reference(file, alignment, along)
+        file.write('<Application name="tinsmith"/>\n')
+        file.write(format_alignment(alignment, title.strip(), factor))
+        file.write("</LandXML>\n")
+
+
 def _require_lines(obj: TIN | Survey | Features) -> None:
     if not isinstance(obj, Features) or obj.kind == "lines":
         return
@@ -136,7 +157,9 @@ def _require_lines(obj: TIN | Survey | Features) -> None:
 # ------------------------------------------------------------------ units and CRS
 
 
-def _write_reference(file: IO[str], obj: TIN | Survey | Features, unit: Unit | None) -> None:
+def _write_reference(
+    file: IO[str], obj: TIN | Survey | Features | Alignment, unit: Unit | None
+) -> None:
     names = None if unit is None else name_unit(unit)
     if names is not None:
         system, name = names
@@ -268,12 +291,6 @@ def _select_texts(obj: TIN | Survey | Features) -> dict[str, list[str]]:
 
 _BOUNDARIES = {"boundary": ("outer", "void"), "hole": ("void", "island")}
 """Of the outer ring of a polygon, and of those in it."""
-
-
-def quote(text: str) -> str:
-    """Return a text as the value of an attribute, without letters that XML does not have."""
-    plain = "".join(one if one.isprintable() else " " for one in text)
-    return quoteattr(plain.encode("utf-8", "replace").decode("utf-8"))
 
 
 def format_source(obj: TIN | Survey | Features, factor: float) -> str:
