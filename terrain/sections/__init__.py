@@ -1,15 +1,21 @@
 """Sections: profiles along lines, cross sections, and features laid on the surface."""
 
-from .crosswise import cross_sections, section_lines
+from .axes import CHORD, Axis, as_axis, lines_to_segments
+from .crosswise import as_reaches, cross_sections, place_sections, section_lines
 from .draping import check_features, drape, drape_points
-from .profiles import lines_to_segments, profile
+from .profiles import profile
 
 __all__ = [
+    "CHORD",
+    "Axis",
+    "as_axis",
+    "as_reaches",
     "check_features",
     "cross_sections",
     "drape",
     "drape_points",
     "lines_to_segments",
+    "place_sections",
     "profile",
     "section_lines",
 ]

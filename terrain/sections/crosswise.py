@@ -9,19 +9,14 @@ import numpy as np
 from ...base.checks import as_length, as_number
 from ...base.crs import scale_elevations
 from ...base.errors import OptionError, PointsError
-from ...base.georeference import require_same_crs
-from ...base.georeference.axes import find_axes
+from ...base.georeference import find_axes
 from ...base.products import product
 from ...base.results import Features, Table
 from ...base.sentences import coordinate
 from ...tin.validation.points import as_elevations
-from ..surface import Segments, as_features
-from .profiles import (
-    lines_to_segments,
-    measure_rows,
-    require_few,
-    require_surface,
-)
+from ..surface import Segments
+from .axes import Places, as_axis
+from .profiles import measure_rows, require_few, require_surface
 from .rows import cut_rows, find_runs
 from .surfaces import as_surfaces
 
@@ -30,8 +25,9 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike
 
-    from ...base.arrays import Float64Array, Int64Array
+    from ...base.arrays import AnyArray, Float64Array, Int64Array
     from ...tin import TIN
+    from .axes import Axis
     from .rows import Rows
     from .surfaces import Surfaces
 
@@ -53,7 +49,14 @@ class _Cut(NamedTuple):
     surfaces: Surfaces
     axes: _Axes
     rows: Rows
+    axis: Axis
     notes: tuple[str, ...]
+
+    def list_stations(self, section: Int64Array) -> dict[str, AnyArray]:
+        """Return columns of the centreline and the stations of sections."""
+        stations = self.axes.stations[section]
+        lines = {"line": self.axes.lines[section], "section": section, "station": stations}
+        return lines | self.axis.write_stations(stations)
 
 
 @product
@@ -73,7 +76,7 @@ def cross_sections(
     Parameters
     ----------
     tin, centreline
-        Surfaces and polylines as of :func:`tinsmith.profile`.
+        Surfaces, and polylines or an alignment, as of :func:`tinsmith.profile`.
     interval : float, optional
         A section at every station that is a multiple of it, and at both ends, CRS units.
     stations : (s,) array, optional
@@ -102,6 +105,9 @@ def cross_sections(
 
     Notes
     -----
+    Of an :class:`Alignment` sections are square to the curve itself, ``start`` is its own, and
+    stations are lengths; with station equations ``written_station`` has what is written there.
+
     A section is square to the segment of the centreline that holds its station. At a vertex of the
     centreline it halves the angle between both segments (its direction is square to the mean of
     their unit vectors); where the centreline turns back on itself it is square to the segment that
@@ -120,12 +126,7 @@ def cross_sections(
     """
     cut = _cut(tin, centreline, interval, stations, (width, left, right), start)
     section = cut.axes.segments.lines[cut.rows.places.segments]
-    columns = {
-        "line": cut.axes.lines[section],
-        "section": section,
-        "station": cut.axes.stations[section],
-        "offset": cut.rows.places.stations,
-    }
+    columns = cut.list_stations(section) | {"offset": cut.rows.places.stations}
     return measure_rows(
         cut.surfaces, cut.axes.segments, cut.rows, columns, name="cross sections", notes=cut.notes
     )
@@ -175,11 +176,7 @@ def section_lines(
     runs = [find_runs(cut.rows, k) for k in range(len(cut.surfaces.tins))]
     first_rows = np.concatenate([one.first_rows for one in runs])
     section = cut.axes.segments.lines[cut.rows.places.segments[first_rows]]
-    columns: dict[str, Any] = {
-        "line": cut.axes.lines[section],
-        "section": section,
-        "station": cut.axes.stations[section],
-    }
+    columns: dict[str, Any] = cut.list_stations(section)
     if any(cut.surfaces.names):
         counts = [len(one.first_rows) for one in runs]
         columns["surface"] = np.repeat(np.array(cut.surfaces.names, object), counts)
@@ -189,7 +186,11 @@ def section_lines(
         np.concatenate([one.coordinates for one in runs]),
         np.concatenate([[0], np.cumsum(lengths)]),
         columns=columns,
-        units={"station": None if crs is None else crs.horizontal_unit},
+        units={
+            name: None if crs is None else crs.horizontal_unit
+            for name in columns
+            if name.endswith("station")
+        },
         crs=crs,
         elevation_unit=cut.surfaces.elevation_unit,
         name="cross sections",
@@ -207,23 +208,19 @@ def _cut(
 ) -> _Cut:
     surfaces = as_surfaces(tin)
     scale_elevations(surfaces.crs, surfaces.elevation_unit)  # refuses angles
-    features = as_features(centreline, "centreline")
-    notes = surfaces.notes + require_same_crs(
-        features.crs, surfaces.crs, "the centreline", is_plain=not hasattr(centreline, "crs")
-    )
-    segments = lines_to_segments(features, start, "centreline")
-    at = _choose_stations(segments, interval, stations)
+    axis = as_axis(centreline, surfaces.crs, start, "centreline")
+    places = place_sections(axis, interval, stations)
     is_mirrored = find_axes(surfaces.crs).are_mirrored
-    axes = _lay_axes(segments, *at, *_as_reaches(*widths), is_mirrored=is_mirrored)
+    axes = _lay_axes(places, *as_reaches(*widths), is_mirrored=is_mirrored)
     rows = cut_rows(surfaces, axes.segments, is_computed=True)
     require_surface(surfaces, axes.segments, rows, "section")
-    return _Cut(surfaces, axes, rows, notes)
+    return _Cut(surfaces, axes, rows, axis, surfaces.notes + axis.notes)
 
 
 # ---------------------------------------------------------------- options
 
 
-def _as_reaches(width: Any, left: Any, right: Any) -> tuple[float, float]:
+def as_reaches(width: Any, left: Any, right: Any) -> tuple[float, float]:
     """Return how far sections reach to the left and to the right."""
     if width is not None:
         if left is not None or right is not None:
@@ -241,27 +238,20 @@ def _as_reaches(width: Any, left: Any, right: Any) -> tuple[float, float]:
     return reach[0], reach[1]
 
 
-def _choose_stations(
-    segments: Segments, interval: Any, given: Any
-) -> tuple[Int64Array, Float64Array]:
-    """Return the stations of sections, and the segment of each, the one that begins there."""
+def place_sections(axis: Axis, interval: Any, given: Any) -> Places:
+    """Return where sections are, with the directions of the centrelines there.
+
+    Raises OptionError as :func:`cross_sections`.
+    """
     if interval is None and given is None:
         raise OptionError("interval", None, allowed="given, or stations")
-    firsts = np.flatnonzero(np.append(True, np.diff(segments.lines) != 0))
-    lasts = np.append(firsts[1:], len(segments.lines)) - 1
-    ends = np.stack([segments.start_stations[firsts], segments.end_stations[lasts]], axis=1)
-    near = segments.rounding
+    ends, near = axis.ends, axis.rounding
     wanted = [_find_on_lines(ends, given, near)] if given is not None else [np.empty((0, 2))]
     if interval is not None:
         wanted.append(_list_multiples(ends, as_length("interval", interval)))
     pairs = _join_near(np.unique(np.concatenate(wanted), axis=0), ends, near)
     lines, stations = pairs[:, 0].astype(np.int64), pairs[:, 1]
-    segment = np.empty(len(lines), np.int64)
-    for line in np.unique(lines).tolist():
-        own = lines == line
-        begins = segments.start_stations[firsts[line] : lasts[line] + 1]
-        segment[own] = firsts[line] + np.searchsorted(begins, stations[own], side="right") - 1
-    return segment, stations
+    return Places(lines, stations, *axis.measure(lines, stations))
 
 
 def _list_multiples(ends: Float64Array, interval: float) -> Float64Array:
@@ -319,23 +309,11 @@ def _find_on_lines(ends: Float64Array, given: Any, near: float) -> Float64Array:
 # ---------------------------------------------------------------- in the plane
 
 
-def _lay_axes(
-    segments: Segments,
-    segment: Int64Array,
-    stations: Float64Array,
-    left: float,
-    right: float,
-    *,
-    is_mirrored: bool,
-) -> _Axes:
+def _lay_axes(places: Places, left: float, right: float, *, is_mirrored: bool) -> _Axes:
     """Return the sections, each as the segments left and right of the centreline."""
-    begin, end = segments.start_stations[segment], segments.end_stations[segment]
-    share = ((stations - begin) / (end - begin))[:, None]
-    start, stop = segments.starts[segment], segments.ends[segment]
-    middle = np.where(share == 1.0, stop, start + share * (stop - start))
     side = (1.0, -1.0) if is_mirrored else (-1.0, 1.0)
-    to_left = _find_directions(segments, segment, stations)[:, ::-1] * side
-    count = len(stations)
+    to_left, middle = places.tangents[:, ::-1] * side, places.middles
+    count = len(middle)
     outer = np.stack([middle + left * to_left, middle, middle - right * to_left], axis=1)
     offsets = np.broadcast_to([-left, 0.0, right], (count, 3))
     sections = np.repeat(np.arange(count), 2)
@@ -350,20 +328,4 @@ def _lay_axes(
     if len(np.unique(sections[has_length])) < count:
         raise OptionError("width", left + right, allowed="wide enough to tell both ends apart")
     axes = Segments(*(array[has_length] for array in axes))
-    return _Axes(axes, segments.lines[segment], stations)
-
-
-def _find_directions(
-    segments: Segments, segment: Int64Array, stations: Float64Array
-) -> Float64Array:
-    """Return unit vectors along the centreline, at its vertices the mean of both segments'."""
-    along = segments.directions
-    found = along[segment]
-    is_kink = (stations == segments.start_stations[segment]) & (segment > 0)
-    is_kink &= segments.is_continued[segment - 1]
-    before = along[segment[is_kink] - 1]
-    mean = before + found[is_kink]
-    length = np.hypot(mean[:, 0], mean[:, 1])[:, None]
-    with np.errstate(invalid="ignore", divide="ignore"):
-        found[is_kink] = np.where(length > 0.0, mean / length, before)
-    return found
+    return _Axes(axes, places.lines, places.stations)

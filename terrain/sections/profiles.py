@@ -6,14 +6,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ...base.checks import as_length, as_number
+from ...base.checks import as_length
 from ...base.crs import scale_elevations
 from ...base.errors import LinesError, OptionError
-from ...base.georeference import require_same_crs
 from ...base.products import product
 from ...base.results import Table
 from ...base.sentences import counted
-from ..surface import as_features, as_segments
+from .axes import CHORD, as_axis
 from .grades import measure_grades
 from .rows import Places, cut_rows
 from .surfaces import as_surfaces
@@ -22,7 +21,6 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from ...base.arrays import AnyArray, Float64Array, Int64Array
-    from ...base.results import Features
     from ...tin import TIN
     from ..surface import Segments
     from .rows import Rows
@@ -30,9 +28,6 @@ if TYPE_CHECKING:
 
 MOST_STATIONS = 1_000_000
 """So many stations at an interval are made; more are a slip of the interval."""
-
-_FINEST = 1e-6
-"""Share of a line's length to which stations must be told apart."""
 
 
 @product
@@ -49,9 +44,10 @@ def profile(
     ----------
     tin : TIN, sequence of TIN, or mapping of str to TIN
         Surfaces; in a sequence they are called 1, 2, ...
-    line : (k, 2) array, Breakline, Features, geometry, or sequence of these
+    line : (k, 2) array, Breakline, Features, geometry, or sequence of these, or Alignment
         One polyline or several, CRS units. A geometry is one of shapely, a GeoDataFrame, or
-        whatever has a ``__geo_interface__``. Elevations in it are not looked at.
+        whatever has a ``__geo_interface__``. Elevations in it are not looked at. Curves of an
+        alignment are cut along chords within 0.001 CRS units of them, by its own stations.
     interval : float, optional
         Add a row at every station that is a multiple of it, CRS units.
     start : float
@@ -87,9 +83,10 @@ def profile(
     the reversed line has the same rows in reverse, bit for bit, but for stations and what was added
     by ``interval``.
 
-    Stations are lengths in the plane of the CRS, added up from vertex to vertex; there are no
-    station equations. The first call for a TIN builds its index of point location; then a line
-    takes time in proportion to the triangles that it meets.
+    Stations are lengths in the plane of the CRS, added up from vertex to vertex; of an alignment
+    with station equations ``written_station`` has what is written there. The first call for a TIN
+    builds its index of point location; then a line takes time in proportion to the triangles that
+    it meets.
 
     Examples
     --------
@@ -104,35 +101,23 @@ def profile(
     """
     surfaces = as_surfaces(tin)
     scale_elevations(surfaces.crs, surfaces.elevation_unit)  # refuses angles
-    features = as_features(line)
-    notes = surfaces.notes + require_same_crs(
-        features.crs, surfaces.crs, "the lines", is_plain=not hasattr(line, "crs")
-    )
-    segments = lines_to_segments(features, start, "profile")
+    axis = as_axis(line, surfaces.crs, start, "line", "profile")
+    segments = axis.segments
     extra = (
         None if interval is None else _place_at_interval(segments, as_length("interval", interval))
     )
     rows = cut_rows(surfaces, segments, extra)
     require_surface(surfaces, segments, rows)
-    columns = {
+    columns: dict[str, AnyArray] = {
         "line": segments.lines[rows.places.segments],
         "station": rows.places.stations,
     }
+    notes = surfaces.notes + axis.notes
+    if axis.alignment is not None:
+        columns |= axis.write_stations(rows.places.stations)
+        if len(segments.lines) > len(axis.alignment.elements):
+            notes += (f"Curves were cut along chords within {CHORD} of them.",)
     return measure_rows(surfaces, segments, rows, columns, name="profile", notes=notes)
-
-
-def lines_to_segments(features: Features, start: Any, what: str) -> Segments:
-    """Return the segments of features that are lines, their stations counted from ``start``.
-
-    Raises LinesError if they are no lines, or one has no length. Raises OptionError if ``start`` is
-    no number, or too large.
-    """
-    if features.kind != "lines":
-        raise LinesError(f"A {what} runs along lines, and there are {features.kind}.")
-    xy = np.ascontiguousarray(features.coordinates[:, :2]) + 0.0
-    segments = as_segments(xy, features.offsets[0])
-    begin = as_start(start, segments)
-    return segments if begin == 0.0 else as_segments(xy, features.offsets[0], start=begin)
 
 
 def measure_rows(
@@ -196,17 +181,6 @@ def require_surface(surfaces: Surfaces, segments: Segments, rows: Rows, what: st
 
 
 # ---------------------------------------------------------------- stations
-
-
-def as_start(value: Any, segments: Segments) -> float:
-    """Return the station where lines begin, small enough for their stations to differ."""
-    start = as_number("start", value, unit="in CRS units")
-    lengths = segments.end_stations - segments.start_stations
-    shortest = float(np.bincount(segments.lines, lengths).min())
-    if not np.spacing(abs(start)) <= _FINEST * shortest:
-        allowed = f"of a size at which stations along {shortest:.6g} can be told apart"
-        raise OptionError("start", start, allowed=allowed)
-    return start
 
 
 def _place_at_interval(segments: Segments, interval: float) -> Places:

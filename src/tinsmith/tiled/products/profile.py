@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Any
 from ...base.checks import as_length, as_number
 from ...base.crs import CRS
 from ...base.georeference import require_same_crs
-from ...terrain.sections import lines_to_segments, profile
+from ...terrain.alignments import Alignment
+from ...terrain.sections import CHORD, as_axis, lines_to_segments, profile
 from ...terrain.surface import as_features
 from ..along import compute_along, join_along, keep_lines
 from ..tasks import TileProduct
@@ -32,8 +33,12 @@ def check_options(
 ) -> dict[str, Any]:
     """Return options, or refuse what is none."""
     line = list(line) if isinstance(line, Iterator) else line
-    features = as_features(line)
-    lines_to_segments(features, start, "profile")
+    if isinstance(line, Alignment):
+        features = line.to_features(CHORD)
+        as_axis(line, line.crs, start, "line", "profile")
+    else:
+        features = as_features(line)
+        lines_to_segments(features, start, "profile")
     if interval is not None:
         as_length("interval", interval)
     return {
