@@ -95,6 +95,10 @@ def write_files():
         ts.write(ground, name)
     ts.write(ts.triangulate(ts.lines_from_codes(pad)), "pad.ply")
     ts.write(make_lines([[-60, -30], [0, 5], [60, 40]], name="axis"), "axis.gpkg")
+    road = ts.Alignment.from_points(
+        MIDDLE + np.array([[-60, -30], [0, 5], [60, 40]]), radii=9, crs=CRS
+    )
+    ts.write(road, "road.xml")
     ts.write(make_lines([[-60, 20], [60, -20]], [[0, -30], [5, 30]], name="roads"), "roads.gpkg")
     ts.write(make_lines([[-20, -10], [20, 0]], name="kerbs"), "plan.gpkg")
     ts.write(make_lines([[-20, 10], [20, 15]], name="soft"), "soft.shp")

@@ -343,6 +343,7 @@ def names_of_pages(tmp_path, monkeypatch):
     line = middle + np.array([[-40, -20], [40, 20]])
     ts.write(ts.rasterize(ground, spacing=2.0), "other.tif")
     write_grey(ground, Path("ortho.tif"))
+    ts.write(ts.Alignment.from_points(line, crs=ground.crs), "road.xml")
     lines = {"line": line, "centreline": line, "roads": ts.contours(ground, interval=2.0)}
     rings = {"ring": middle + corners, "polygon": middle + corners + np.array([25, 0])}
     edge = dict(zip("ab", ground.edges[0].tolist(), strict=True))

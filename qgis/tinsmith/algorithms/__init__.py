@@ -15,6 +15,7 @@ from .paste import PasteAlgorithm
 from .profile import ProfileAlgorithm
 from .raster import RasterAlgorithm
 from .refine import RefineAlgorithm
+from .sections import SectionsAlgorithm
 from .sight import SightAlgorithm
 from .simplify import SimplifyAlgorithm
 from .slope import SlopeAlgorithm
@@ -30,6 +31,7 @@ ALGORITHMS = (
     SlopeAlgorithm,
     ProfileAlgorithm,
     VolumeAlgorithm,
+    SectionsAlgorithm,
     StorageAlgorithm,
     FlowAlgorithm,
     SightAlgorithm,

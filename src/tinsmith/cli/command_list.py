@@ -24,6 +24,8 @@ SECTIONS = {
         "slope": "Divide a TIN into classes of slope or aspect.",
         "hillshade": "Write a hillshade raster of a TIN.",
         "profile": "Compute profiles and cross sections: tables, 3D lines, pictures.",
+        "alignment": "Describe an alignment; stations and offsets of points.",
+        "sections": "Compute volumes between cross sections, and mass haul.",
         "volume": "Compute cut and fill, or stage-storage tables of ponds.",
         "diff": "Subtract one surface from another: TIN, zones, statistics, map.",
         "drape": "Drape points, lines or polygons on a TIN.",

@@ -121,8 +121,8 @@ def plan_products(
     """Choose what each output holds and its format, and compare all paths, before any work.
 
     What will be written is one of the ``kinds``: "TIN", "Survey", "Features", "Raster", "Table",
-    "picture". Features that have no table of their own are written to tables too. With ``choose``
-    an output may be any of them until that function has seen its formats.
+    "Alignment", "picture". Features that have no table of their own are written to tables too. With
+    ``choose`` an output may be any of them until that function has seen its formats.
     """
     placed = [split_output(path) for path in paths]
     _compare_paths(placed, inputs, report, writing.options)
@@ -177,7 +177,7 @@ def _find_kind(path: Path, writing: Writing, kinds: Sequence[str]) -> str:
     suffix = path.suffix.lower() if name is None else f".{name.strip().lower().lstrip('.')}"
     if suffix in PICTURE_SUFFIXES and "picture" in kinds:
         return "picture"
-    for kind in ("Table", "Features", "TIN"):
+    for kind in ("Table", "Alignment", "Features", "TIN"):
         if kind in kinds and list_writers(path, name, kind):
             return kind
     return next(kind for kind in kinds if kind != "picture")  # whose refusal names what it takes

@@ -8,11 +8,12 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from ...base.sentences import counted
+from ..axes import axis_options, is_landxml, read_axis
 from ..command import command
 from ..job import Job, name_features
 from ..output.counts import mesh_counts
 from ..output.facts import Facts
-from ..parameters import LibraryOption, file_option, number_option, output_files, position_option
+from ..parameters import LibraryOption, number_option, output_files, position_option
 from ..paths import INPUT, make_title
 from ..product_options import product_options
 from ..tiling import choose_tiles, compute_tiles, describe_points, tiled_options
@@ -32,7 +33,7 @@ Pair = tuple[float, float]
 @command
 @click.argument("files", nargs=-1, required=True, type=INPUT)
 @output_files
-@file_option("--line", "Vector file of the lines.", name="line_file")
+@axis_options("Vector file of the lines, or LandXML of an alignment.")
 @position_option("--from", "begin", "Start of a line.")
 @position_option("--to", "end", "End of the line.")
 @product_options("terrain.sections.profiles.profile", "interval start")
@@ -92,7 +93,7 @@ def profile(
     lines: Any = [begin, end]
     if line_file is not None:
         first = next(iter(surfaces.values()))
-        lines = job.read_features(line_file, first, "lines", "a profile runs along lines")
+        lines = _read_lines(line_file, first, asked["alignment"], job)
     with job.step("Cutting"):
         table, sections = _cut(surfaces, lines, planned.holds("Features"), asked)
     figure = _draw(table, surfaces, files, asked) if planned.holds("picture") else None
@@ -108,12 +109,19 @@ def _cut_tiles(
 ) -> None:
     """Write the profile of tiles."""
     if isinstance(line, Path):
-        line = job.read_features(line, cloud, "lines", "a profile runs along lines")
+        line = _read_lines(line, cloud, asked["alignment"], job)
     given = {"line": line, "interval": asked["interval"], "start": asked["start"]}
     with compute_tiles(cloud, "profile", planned, job, **given) as table:
         planned.write("Table", table)
     rows = [("Surface", describe_points(cloud))]
     job.finish(planned, _list_facts(cloud.files, table, rows, getattr(line, "notes", ())))
+
+
+def _read_lines(path: Path, surface: TIN | TiledPoints, name: str | None, job: Job) -> Any:
+    """Return the alignment of a file, or its lines."""
+    if is_landxml(path) or name is not None:
+        return read_axis(path, name, crs=surface.crs)
+    return job.read_features(path, surface, "lines", "a profile runs along lines")
 
 
 def _list_facts(

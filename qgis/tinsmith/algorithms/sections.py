@@ -1,0 +1,49 @@
+"""Volumes between cross sections, and mass haul."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from ..inputs import Lines, Surface
+from ..options import number
+from .base import PICTURES, TABLE_FILES, CommandAlgorithm, Run
+
+
+class SectionsAlgorithm(CommandAlgorithm):
+    """Measure cut and fill section by section along an axis."""
+
+    verb = "sections"
+    title = "Section volumes and mass haul"
+    summary = "Measures cut and fill between two surfaces, section by section along an axis."
+    explanation = (
+        "Each section has its areas; from one to the next there are the volumes between both "
+        "surfaces, those of the mean areas and of Simpson's rule, then the ordinate of mass haul. "
+        "The axis is a layer of one line; the command takes alignments of LandXML, too."
+    )
+    surfaces = (Surface(words="Ground"), Surface("DESIGN", "Design"))
+    lines = (Lines("LINE", "Axis", "--line", "A layer of one line.", required=True),)
+    options = (
+        number(
+            "INTERVAL", "Interval of sections", "--interval", "Along the axis.", 20.0, least=0.0
+        ),
+        number(
+            "WIDTH", "Width of sections", "--width", "Half of it to either side.", 30.0, least=0.0
+        ),
+        number("START", "Station where the axis begins", "--start", "", 0.0, advanced=True),
+        number("CUT_FACTOR", "Factor of cut", "--cut-factor", "Above 1 it swells.", 1.0, least=0.0),
+        number("FILL_FACTOR", "Factor of fill", "--fill-factor", "", 1.0, least=0.0, advanced=True),
+    )
+
+    def add_outputs(self) -> None:
+        """Add the table and the diagram."""
+        self.add_file_output("OUTPUT", "Table", TABLE_FILES, "A row for each section.")
+        self.add_loading("Load the table")
+        self.add_file_output("PICTURE", "Mass haul", PICTURES, "The diagram.", optional=True)
+
+    def make(self, run: Run) -> dict[str, Any]:
+        """Measure."""
+        arguments = ["sections", *self._list_surfaces(run), *run.list_lines(self.lines)]
+        paths, named = run.list_outputs("OUTPUT", "PICTURE")
+        run.run([*arguments, *run.list_options(self.options), *run.list_extra(), *named])
+        self.load_later(run, paths["OUTPUT"], "Section volumes")
+        return dict(paths)
