@@ -6,6 +6,7 @@ import gc
 
 import hypothesis
 import pytest
+from support import each_value
 from support.no_skips import (  # noqa: F401 - hooks
     pytest_addoption,
     pytest_make_collect_report,
@@ -16,9 +17,12 @@ from tinsmith.terrain.viewer import opengl
 from tinsmith.tin import TinsmithError
 
 # A timing is never a test; a test that hangs ends at pytest's own limit. The same commit is tested
-# with the same examples; --hypothesis-profile=explore draws others each time.
+# with the same examples, few where campaigns draw thousands of the same; --hypothesis-profile=explore
+# draws others each time, and more.
 hypothesis.settings.register_profile("explore", deadline=None)
-hypothesis.settings.register_profile("tinsmith", deadline=None, derandomize=True, database=None)
+hypothesis.settings.register_profile(
+    "tinsmith", deadline=None, derandomize=True, database=None, max_examples=30
+)
 hypothesis.settings.load_profile("tinsmith")
 
 # Collecting makes millions of objects that stay: the collector would look through them in vain.
@@ -35,6 +39,7 @@ def can_draw():
 
 
 def pytest_collection_modifyitems(config, items):
+    each_value.mark_other_cases(items)
     left_out = [name for name in ("proof", "slow") if name not in config.option.markexpr]
     left = {item for name in left_out for item in items if item.get_closest_marker(name)}
     config.hook.pytest_deselected(items=[item for item in items if item in left])

@@ -81,6 +81,7 @@ def test_every_entry_point_takes_every_way(entry_point, way, folder):
         assert found.crs == "EPSG:32616"
 
 
+@pytest.mark.each_value
 @pytest.mark.parametrize("wrong", ["EPSG:99999", "nonsense", 7, True, 2.5, [1], "EPSG:4978", 5703])
 @pytest.mark.parametrize("entry_point", ENTRY_POINTS)
 def test_every_entry_point_refuses_what_is_no_crs(entry_point, wrong, folder):

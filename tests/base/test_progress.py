@@ -112,6 +112,7 @@ class Enough(Exception):
     """What a caller raises to end a call."""
 
 
+@pytest.mark.each_value
 @pytest.mark.parametrize("after", [0.0, 0.5, 1.0])
 @pytest.mark.parametrize("name", CALLS)
 def test_what_it_raises_ends_the_call(name, after, points, tins):
@@ -139,6 +140,7 @@ def test_flats_are_mended_with_fractions(contoured):
     assert len(told.points) > len(contoured.points)
 
 
+@pytest.mark.each_value
 @pytest.mark.parametrize("wrong", [1, "yes", True, [print]])
 @pytest.mark.parametrize("name", CALLS)
 def test_what_cannot_be_called_is_refused(name, wrong, points, tins):

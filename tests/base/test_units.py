@@ -110,6 +110,7 @@ def invoke(*arguments, code=0):
     return result
 
 
+@pytest.mark.each_value
 @pytest.mark.parametrize("ground", GROUNDS)
 @pytest.mark.parametrize("entry_point", ENTRY_POINTS)
 @pytest.mark.parametrize("degrees", [45.0, 73.05])

@@ -26,6 +26,7 @@ def run(*arguments, code):
     return done.output
 
 
+@pytest.mark.each_value
 @pytest.mark.parametrize("kind", [*FACE_WRITERS])
 @pytest.mark.parametrize("name", SURFACES)
 def test_a_sound_surface_is_told_from_a_delaunay_one(tmp_path, kind, name):

@@ -174,6 +174,7 @@ def test_bad_rows_and_nodata_are_left_out_on_request(folder):
     assert "4 vertices" in stderr
 
 
+@pytest.mark.each_value
 @pytest.mark.parametrize("flag", ["--crs", "--to-crs", "--source-crs"])
 @pytest.mark.parametrize("crs", ["EPSG:999999", "", "no such", "EPSG:5703", "EPSG:4978"])
 def test_an_unknown_crs_is_wrong_usage(folder, flag, crs):

@@ -36,6 +36,7 @@ def make(points, unit):
     return ts.triangulate(np.column_stack([points[:, :2], z]), crs=CRS, elevation_unit=unit)
 
 
+@pytest.mark.each_value
 @pytest.mark.parametrize("unit", ["m", "ft"])
 @pytest.mark.parametrize("suffix", LINE_FORMATS)
 @pytest.mark.parametrize("command", ["--from-contours", "--breaklines"])

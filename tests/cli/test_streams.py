@@ -274,6 +274,7 @@ def test_the_bar_speaks_on_stderr_and_vanishes():
     assert not words.markup
 
 
+@pytest.mark.each_value
 @pytest.mark.parametrize("arguments", [["formats"], ["formats", "--json"], ["completion", "bash"]])
 @pytest.mark.parametrize(("to", "why"), [(">&-", "it is closed"), (">/dev/full", "No space left")])
 def test_commands_that_only_print_tell_that_they_cannot(arguments, to, why):

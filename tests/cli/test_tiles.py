@@ -3,17 +3,19 @@
 from __future__ import annotations
 
 import json
+import shutil
 
 import numpy as np
 import pytest
 import rasterio
 import shapely
 from click.testing import CliRunner
-from support.many_files import write_lidar
+from support.many_files import KeptProcesses, write_lidar
 
 import tinsmith as ts
 from tinsmith.cli import main, tiling
 from tinsmith.cli.command_list import SUMMARIES
+from tinsmith.tiled.running.executors import Processes
 
 COMMANDS = {
     "raster": ["--spacing", "5", "-o", "out.tif"],
@@ -77,11 +79,28 @@ def commands(given):
     return {name: [given.get(word, word) for word in words] for name, words in COMMANDS.items()}
 
 
+@pytest.fixture(scope="module", autouse=True)
+def kept_processes():
+    """Use the processes of one command for the next, but for one test below."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("tinsmith.tiled.running.how.Processes", KeptProcesses)
+        yield
+    KeptProcesses.end()
+
+
+@pytest.fixture(scope="module")
+def folder_of_processes(tmp_path_factory):
+    """Return the folder in which the kept processes are, by which they know relative paths."""
+    return tmp_path_factory.mktemp("here")
+
+
 @pytest.fixture
-def here(tmp_path, monkeypatch):
-    """Work in a new folder, and return it."""
-    monkeypatch.chdir(tmp_path)
-    return tmp_path
+def here(folder_of_processes, monkeypatch):
+    """Work in an empty folder, and return it."""
+    monkeypatch.chdir(folder_of_processes)
+    for one in folder_of_processes.iterdir():
+        shutil.rmtree(one) if one.is_dir() else one.unlink()
+    return folder_of_processes
 
 
 def run(command, *words):
@@ -209,6 +228,7 @@ def test_options_of_points_and_of_surfaces_are_not_mixed(words, sentence, more, 
     assert [one.name for one in here.iterdir()] == ["places.csv"]
 
 
+@pytest.mark.each_value
 @pytest.mark.parametrize("kind", ["own elevations", pytest.param("draped", marks=pytest.mark.slow)])
 @pytest.mark.parametrize("command", COMMANDS)
 def test_lines_of_files_are_those_in_memory(command, kind, lidar, here, tmp_path_factory, commands):
@@ -393,7 +413,8 @@ def test_simplified_in_tiles(lidar, here):
     assert sorted(one.name for one in here.iterdir()) == ["a.ply", "b.ply"]
 
 
-def test_surfaces_become_the_file_of_memory(lidar, here):
+def test_surfaces_become_the_file_of_memory(lidar, here, monkeypatch):
+    monkeypatch.setattr("tinsmith.tiled.running.how.Processes", Processes)
     options = [lidar, "--classes", "2"]
     done = run("build", *options, "-o", "made.ply", "--tiles", "3", "--workers", "2", "--json")
     assert done.exit_code == 0, done.output

@@ -9,6 +9,7 @@ import numpy as np
 
 import tinsmith as ts
 from tinsmith.base.notes import warn
+from tinsmith.tiled.running.executors import Processes
 
 
 class Shuffled(Executor):
@@ -36,6 +37,30 @@ class Shuffled(Executor):
             future.set_result(function(*given, **named))
         except BaseException as error:
             future.set_exception(error)
+
+
+class KeptProcesses(Processes):
+    """Processes that wait for the tasks of further runs: starting them takes longer than tasks."""
+
+    waiting = {}
+
+    def start(self):
+        """Return the pool, that of an earlier run if there is one."""
+        self._pool = self._pool or self.waiting.pop(self.workers, None)
+        return super().start()
+
+    def close(self):
+        """Keep the processes."""
+        if self._pool is not None:
+            self.waiting[self.workers] = self._pool
+            self._pool = None
+
+    @classmethod
+    def end(cls):
+        """End the processes that wait."""
+        for pool in cls.waiting.values():
+            pool.shutdown()
+        cls.waiting.clear()
 
 
 def lose(tin, box):

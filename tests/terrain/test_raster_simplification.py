@@ -55,6 +55,7 @@ RASTERS = {
 }
 
 
+@pytest.mark.each_value
 @pytest.mark.parametrize("name", RASTERS)
 @pytest.mark.parametrize("share", [0.0, 0.01, 0.1])
 @pytest.mark.parametrize("side", [None, 7, 16])
@@ -139,6 +140,7 @@ def test_the_core_measures_what_brute_force_does():
     assert measured.ravel() == pytest.approx(errors(points, tin), abs=1e-9)
 
 
+@pytest.mark.each_value
 @pytest.mark.parametrize("tolerance", [0.0, 0.05, 2.0])
 @pytest.mark.parametrize("name", RASTERS)
 def test_vector_paths_choose_the_same_cells(name, tolerance, monkeypatch):

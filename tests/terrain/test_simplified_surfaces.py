@@ -131,6 +131,7 @@ def test_the_order_of_points_changes_nothing(seed, tolerance):
     assert largest_difference(tins[0], one) <= tolerance + 1e-9
 
 
+@pytest.mark.each_value
 @pytest.mark.parametrize("share", [0.0, 0.05, 0.3])
 @pytest.mark.parametrize("tolerance", [0.0, 0.5, 5.0])
 def test_between_cells_of_a_raster(share, tolerance):

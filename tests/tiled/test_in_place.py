@@ -85,6 +85,7 @@ def list_files(path):
     }
 
 
+@pytest.mark.each_value
 @pytest.mark.filterwarnings("ignore")  # of formats that hold no notes, and of the geoid
 @pytest.mark.parametrize("product", PRODUCTS)
 @pytest.mark.parametrize("kind", SOURCES)

@@ -123,6 +123,7 @@ def tile(folder, store, **lines):
     return ts.tiles(files, crs=CRS, store=store, **lines)
 
 
+@pytest.mark.each_value
 @pytest.mark.filterwarnings("ignore:.* is a shapefile")
 @pytest.mark.parametrize(
     "product",
@@ -144,6 +145,7 @@ def test_products_are_those_in_memory(folder, store, points, tmp_path, kind, pro
         assert filecmp.cmp(path, target, shallow=False), tiles
 
 
+@pytest.mark.each_value
 @pytest.mark.parametrize("raster", RASTERS)
 @pytest.mark.parametrize("kind", LINES)
 def test_rasters_are_those_in_memory(folder, store, points, tmp_path, kind, raster):

@@ -65,6 +65,7 @@ def test_notes_are_those_in_memory(survey, tmp_path, name):
         assert path.read_bytes() == wanted.replace(b"whole-", b"")
 
 
+@pytest.mark.each_value
 @pytest.mark.parametrize("tiles", [1, 5])
 @pytest.mark.parametrize("is_other", [False, True])
 def test_volumes_tell_of_both_surfaces(survey, tmp_path, is_other, tiles):

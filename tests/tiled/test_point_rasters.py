@@ -33,6 +33,7 @@ def write_tiled(cloud, path, tiles, **asked):
         return write_without_notes(made, path)
 
 
+@pytest.mark.each_value
 @pytest.mark.parametrize("tiles", [1, 5, 40])
 @pytest.mark.parametrize("spacing", [1.0, 10.0, 300.0])
 def test_bytes_are_those_in_memory(lidar, tmp_path, tiles, spacing, monkeypatch):

@@ -92,6 +92,7 @@ def design(tmp_path_factory):
     return folder
 
 
+@pytest.mark.each_value
 @pytest.mark.parametrize("regions", [None, SQUARES])
 @pytest.mark.parametrize("in_files", [False, True])
 def test_volumes_to_another_surface(lidar, design, tmp_path, regions, in_files):
@@ -249,6 +250,7 @@ def test_places_in_another_crs_are_refused(cloud, tmp_path):
         cloud.interpolate(tmp_path / "a.csv", places, executor=Shuffled())
 
 
+@pytest.mark.each_value
 @pytest.mark.parametrize("value", ["slope", "aspect", "hillshade"])
 @pytest.mark.parametrize("smooth", [False, True])
 def test_slopes_and_light(cloud, tin, tmp_path, value, smooth):

@@ -213,6 +213,7 @@ VOIDS = {
 }
 
 
+@pytest.mark.each_value
 @pytest.mark.filterwarnings("ignore:.* is a shapefile")
 @pytest.mark.parametrize("name", VOIDS)
 @pytest.mark.parametrize("options", [{}, {"cells": (3, 2, 33, 25), "stride": 2}])

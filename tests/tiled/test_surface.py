@@ -33,6 +33,7 @@ def read_index(folder):
     return index
 
 
+@pytest.mark.each_value
 @pytest.mark.parametrize("tiles", [1, 4, 16])
 @pytest.mark.parametrize("name", ["ply", "tin"])
 def test_triangles_and_numbers_are_those_in_memory(lidar, tin, tmp_path, tiles, name):

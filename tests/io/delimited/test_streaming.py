@@ -58,6 +58,7 @@ def test_blocks_are_the_whole(tmp_path, small_blocks, case):
     require_same(write(tmp_path, lines), **options)
 
 
+@pytest.mark.each_value
 @pytest.mark.parametrize("ends", ["\n", "\r\n", "\r"])
 @pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "cp1252", "utf-16", "utf-16-be"])
 def test_encodings_and_line_ends(tmp_path, small_blocks, ends, encoding):

@@ -132,7 +132,7 @@ def has_unproved_commas(layout, delimiter, rows):
     return unproved == inner and bool(marked) and not by_custom
 
 
-@settings(max_examples=100, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=40, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(table=tables())
 @example(table=("NEZ", "pipe", ",", [["1.000", ".5", ".5"]] * 3, "\n", False))
 @example(
@@ -661,7 +661,7 @@ def test_quotes_as_surveyors_write_them(survey):
     assert found.points.tolist() == [[float(cell) for cell in row[:3]] for row in oracle]
 
 
-@settings(max_examples=200, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=80, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(tails=st.lists(st.text('a",b ', max_size=7), min_size=1, max_size=4))
 def test_every_pile_of_quotes_reads_as_csv_says_or_is_refused(survey, tails):
     lines = [f"{i},2.5,3.5,{tail}" for i, tail in enumerate(tails)]
@@ -970,7 +970,7 @@ def test_source_crs_is_left_for_another(survey):
 values = st.floats(allow_nan=False, allow_infinity=False)
 
 
-@settings(max_examples=60, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=25, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(
     points=st.lists(st.tuples(values, values, values), min_size=1, max_size=8),
     words=st.data(),

@@ -316,6 +316,7 @@ def with_keys(path, *keys, texts=b""):
     return path
 
 
+@pytest.mark.each_value
 @pytest.mark.parametrize("target", [None, "EPSG:32616", "EPSG:2274"])
 @pytest.mark.parametrize("second", [9001, 9003])
 @pytest.mark.parametrize("first", [9001, 9003])

@@ -84,6 +84,7 @@ def require_rows(path, blobs, integers, reals):
         assert file.execute("PRAGMA integrity_check").fetchall() == [("ok",)]
 
 
+@pytest.mark.each_value
 @pytest.mark.parametrize("page_size", [512, 4096, 32768])
 @pytest.mark.parametrize("count", COUNTS)
 def test_rows_are_those_given(tmp_path, count, page_size):
@@ -180,6 +181,7 @@ def test_level_triangles_have_no_aspect(tmp_path):
 # ------------------------------------------------------------------ read again
 
 
+@pytest.mark.each_value
 @pytest.mark.parametrize("page_size", [512, 4096, 32768])
 @pytest.mark.parametrize("count", COUNTS)
 def test_rows_written_are_read_from_their_pages(tmp_path, count, page_size):

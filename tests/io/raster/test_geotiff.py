@@ -29,6 +29,7 @@ def raster(rows=40, columns=30, *, dtype=np.float64, crs="EPSG:32616", **about):
     return ts.Raster({"elevation": values}, grid(rows, columns), crs=crs, **about)
 
 
+@pytest.mark.each_value
 @pytest.mark.parametrize("form", FORMATS)
 @pytest.mark.parametrize(("rows", "columns"), [(1, 1), (40, 30), (700, 513), (3, 1200)])
 def test_what_rasterio_reads_back(tmp_path, form, rows, columns):
@@ -84,6 +85,7 @@ def test_another_compression_is_refused(tmp_path):
     assert list(tmp_path.iterdir()) == []
 
 
+@pytest.mark.each_value
 @pytest.mark.parametrize("form", FORMATS)
 @pytest.mark.parametrize("dtype", ["uint8", "float64"])
 def test_bytes_do_not_depend_on_the_number_of_cores(tmp_path, monkeypatch, form, dtype):

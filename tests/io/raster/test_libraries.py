@@ -55,6 +55,7 @@ def open_as_xarray(path, **options):
     return rioxarray.open_rasterio(path, **options)
 
 
+@pytest.mark.each_value
 @pytest.mark.parametrize("fill", [False, True])
 @pytest.mark.parametrize("case", CASES)
 def test_the_survey_is_that_of_the_file(tmp_path, case, fill):

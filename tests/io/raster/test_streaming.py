@@ -142,6 +142,7 @@ BOXES = [
 ]
 
 
+@pytest.mark.each_value
 @pytest.mark.parametrize("box", BOXES)
 @pytest.mark.parametrize("options", [{}, {"stride": 3}, {"cells": (3, 2, 11, 20), "stride": 2}])
 def test_boxes(tmp_path, strips, box, options):

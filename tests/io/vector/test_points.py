@@ -426,6 +426,7 @@ def test_parquet_without_geometries_is_refused(tmp_path):
 # ---------------------------------------------------------------------------- axis order
 
 
+@pytest.mark.each_value
 @pytest.mark.parametrize("suffix", [".gpkg", ".fgb", ".shp", ".gml", ".geojson"])
 @pytest.mark.parametrize(
     ("crs", "easting", "northing", "longitude", "latitude"),

@@ -29,6 +29,7 @@ def write(path, xyz=XYZ, crs=UTM, columns=None, group=64, **options):
     return path
 
 
+@pytest.mark.each_value
 @pytest.mark.parametrize(
     "options",
     [
@@ -88,6 +89,7 @@ def test_other_features_are_read_at_once(tmp_path):
 # ------------------------------------------------------------------ metadata and boxes
 
 
+@pytest.mark.each_value
 @pytest.mark.parametrize("how", [{"write_covering_bbox": True}, {"geometry_encoding": "geoarrow"}])
 @pytest.mark.parametrize(
     "box",

@@ -360,6 +360,7 @@ def turned_grid(side, degrees, *, origin=(0.0, 0.0), digits=None):
     return ts.triangulate(points if digits is None else points.round(digits))
 
 
+@pytest.mark.each_value
 @pytest.mark.parametrize("digits", [None, 3, 2])
 @pytest.mark.parametrize("origin", [(0.0, 0.0), (500_000.0, 4_000_000.0)])
 @pytest.mark.parametrize("degrees", [3.0, 30.0, 45.0, 71.1])

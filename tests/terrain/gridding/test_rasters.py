@@ -79,7 +79,7 @@ def test_centres_have_the_interpolated_elevation_to_the_last_bit(surface, cells,
     assert np.isfinite(wanted).any()
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=20, deadline=None)
 @given(
     places(st.integers(0, 6), 16),
     st.sampled_from([0.25, 0.5, 1.0, 2.0]),

@@ -50,6 +50,7 @@ def measure_difference(value, found, wanted):
     return np.minimum(off, 360.0 - off) if value == "aspect" else off
 
 
+@pytest.mark.each_value
 @pytest.mark.skipif(shutil.which("gdaldem") is None, reason="needs gdaldem")
 @pytest.mark.parametrize("smooth", [None, False, True])
 @pytest.mark.parametrize("value", VALUES)
@@ -78,6 +79,7 @@ def test_slopes_of_a_real_dem_are_near_those_of_gdaldem(tmp_path):
     assert np.nanpercentile(off, 99) < 1.8
 
 
+@pytest.mark.each_value
 @pytest.mark.parametrize("smooth", [None, False])
 @pytest.mark.parametrize("value", VALUES)
 def test_a_window_of_a_dem_has_the_cells_of_the_whole(value, smooth):

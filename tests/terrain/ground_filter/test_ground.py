@@ -143,6 +143,7 @@ def test_low_noise_is_told_apart_and_does_no_harm():
     assert found.counts == {"ground": len(points), "others": 0, "low noise": 6}
 
 
+@pytest.mark.each_value
 @pytest.mark.parametrize("apart", [1.0, 2.0, 5.0, 7.0, 9.0, 14.0])
 @pytest.mark.parametrize("direction", [(1.0, 0.0), (0.0, 1.0), (0.7, 0.7)])
 def test_two_low_points_of_one_depth_do_not_hide_each_other(direction, apart):

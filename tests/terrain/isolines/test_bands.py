@@ -168,6 +168,7 @@ def test_a_sliver_along_which_the_surface_jumps_loses_no_band():
         assert found.get(float(level), 0.0) == pytest.approx(area, abs=1e-6)
 
 
+@pytest.mark.each_value
 @pytest.mark.parametrize("origin", [(0.0, 0.0), (500_000.0, 4_000_000.0)])
 @pytest.mark.parametrize("digits", [None, 2])
 @pytest.mark.parametrize("degrees", [30.0, 71.1])

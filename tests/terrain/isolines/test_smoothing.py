@@ -35,6 +35,7 @@ OPTIONS = [
 ]
 
 
+@pytest.mark.each_value
 @pytest.mark.parametrize("options", OPTIONS)
 @pytest.mark.parametrize("seed", range(6))
 @pytest.mark.parametrize("make", [hilly, integer_grid])

@@ -60,6 +60,7 @@ class Reaches:
                 self.blocks.append(rasters.compute_block(part, rows, columns, options))
 
 
+@pytest.mark.each_value
 @pytest.mark.parametrize("name", CLOUDS)
 @pytest.mark.parametrize("value", ["elevation", "slope"])
 def test_means_of_cells_are_those_of_the_whole(name, value):

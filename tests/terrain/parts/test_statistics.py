@@ -16,6 +16,7 @@ from tinsmith.terrain.relief.statistics import (
 )
 
 
+@pytest.mark.each_value
 @pytest.mark.parametrize("name", CLOUDS)
 @pytest.mark.parametrize("unit", ["degrees", "percent"])
 def test_statistics_are_those_of_the_whole(name, unit):

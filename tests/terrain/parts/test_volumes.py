@@ -26,6 +26,7 @@ def list_squares(points, count):
     }
 
 
+@pytest.mark.each_value
 @pytest.mark.parametrize("name", CLOUDS)
 @pytest.mark.parametrize("with_regions", [False, True])
 def test_volumes_to_a_plane_are_those_of_the_whole(name, with_regions):
@@ -40,6 +41,7 @@ def test_volumes_to_a_plane_are_those_of_the_whole(name, with_regions):
             require_same_table(join_volumes(tiling, options), whole)
 
 
+@pytest.mark.each_value
 @pytest.mark.parametrize("name", ["uniform", "lattice", "levels at vertices", "very few"])
 @pytest.mark.parametrize("with_regions", [False, True])
 def test_volumes_to_another_surface_are_those_of_the_whole(name, with_regions):

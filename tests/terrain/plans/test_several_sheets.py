@@ -45,6 +45,7 @@ def uncovered(tin, made):
     return shapely.difference(outline(tin), frames.buffer(1e-6)).area
 
 
+@pytest.mark.each_value
 @pytest.mark.parametrize(
     "shape",
     [

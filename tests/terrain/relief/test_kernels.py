@@ -46,6 +46,7 @@ def measure_longest_sides(tin):
     return np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2).max(axis=1)
 
 
+@pytest.mark.each_value
 @pytest.mark.parametrize("seed", range(4))
 @pytest.mark.parametrize("make", SURFACES)
 @pytest.mark.parametrize("share", [1.0, 0.7])

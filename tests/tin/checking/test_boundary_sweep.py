@@ -90,6 +90,7 @@ def random_ring(rng, size):
             return ring[:: rng.choice([-1, 1])]
 
 
+@pytest.mark.each_value
 @pytest.mark.parametrize("origin", [np.zeros(2), UTM])
 @pytest.mark.parametrize("size", [3, 5, 9])
 def test_any_rings_on_a_small_grid(size, origin):

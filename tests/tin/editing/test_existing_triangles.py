@@ -163,6 +163,7 @@ def require_build_of(tin, rows, lines):
     assert tin.report.to_dict()["left_out"].get("removed by an edit", []) == gone
 
 
+@pytest.mark.each_value
 @pytest.mark.parametrize("has_line", [False, True])
 @pytest.mark.parametrize("seed", range(6))
 def test_rows_and_vertices_of_many_edits_are_those_of_a_fresh_build(seed, has_line):

@@ -68,6 +68,7 @@ def require_state(tin, wanted):
         np.testing.assert_array_equal(array, wanted[name], err_msg=name)
 
 
+@pytest.mark.each_value
 @pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.parametrize("seed", range(8))
 def test_any_edits_leave_what_a_fresh_build_gives(kind, seed):

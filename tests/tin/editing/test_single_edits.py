@@ -73,6 +73,7 @@ def logged(monkeypatch):
     return found
 
 
+@pytest.mark.each_value
 @pytest.mark.parametrize("duplicates", [False, True])
 @pytest.mark.parametrize("lines", [[], LINES], ids=["points", "lines"])
 def test_an_edit_that_is_logged_is_the_same_edit(lines, duplicates, logged):

@@ -78,6 +78,7 @@ def test_weights_are_those_of_the_definition_on_small_grids(method, sites, seed)
     np.testing.assert_allclose(found, wanted, rtol=0, atol=1e-10)
 
 
+@pytest.mark.each_value
 @pytest.mark.parametrize("method", ["natural", "laplace"])
 @pytest.mark.parametrize("shift", [(0.0, 0.0), UTM])
 def test_weights_are_those_of_the_definition_on_uneven_points(method, shift):
@@ -88,6 +89,7 @@ def test_weights_are_those_of_the_definition_on_uneven_points(method, shift):
     np.testing.assert_allclose(tin.interpolate(xy, method=method), wanted, rtol=0, atol=1e-9)
 
 
+@pytest.mark.each_value
 @pytest.mark.parametrize("method", ["natural", "laplace"])
 @pytest.mark.parametrize("offset", [1e-3, 1e-6, 1e-9, 2.0**-30])
 def test_slivers_along_the_hull_take_no_digits(method, offset):

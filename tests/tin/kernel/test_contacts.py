@@ -49,7 +49,7 @@ def bundle(rng, n):
     return xy, as_pairs(number)
 
 
-@settings(max_examples=150)
+@settings(max_examples=60)
 @given(seeds, st.sampled_from(DATA), st.integers(1, 3))
 def test_contacts_of_all_pairs(seed, name, threads):
     xy, segments = drawn(name, np.random.default_rng(seed))

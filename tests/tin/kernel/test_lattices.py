@@ -59,6 +59,7 @@ def full(columns=40, rows=30):
 # ------------------------------------------------------------------ full rasters
 
 
+@pytest.mark.each_value
 @pytest.mark.parametrize("corner", [(0, 0), UTM_CORNER, (-1e9, 1e9), (1e-20, 0.1), (3e60, -1e60)])
 @pytest.mark.parametrize("step", [1.0, 0.1, 1 / 3, 30.0, 1e6])
 def test_full_raster_is_a_lattice_at_any_origin(corner, step):
@@ -164,6 +165,7 @@ GAPS = {
 }
 
 
+@pytest.mark.each_value
 @pytest.mark.parametrize("ratio", [1.0, 1.7])
 @pytest.mark.parametrize("name", GAPS)
 def test_gaps(name, ratio):
@@ -204,6 +206,7 @@ def test_islands():
     require_lattice(kept(keep))
 
 
+@pytest.mark.each_value
 @pytest.mark.parametrize("share", [0.001, 0.01, 0.05, 0.1, 0.15])
 @pytest.mark.parametrize("name", ["raster", "decimal raster"])
 def test_missing_cells(name, share):

@@ -201,7 +201,7 @@ def test_places_on_a_small_grid(points, queries, frame):
     np.testing.assert_array_equal(tin.locate(xy), locate_by_definition(tin, xy))
 
 
-@settings(max_examples=60)
+@settings(max_examples=25)
 @given(seeds, st.floats(0.1, 0.9))
 def test_surface_with_triangles_torn_out(seed, share):
     random = rng(seed)

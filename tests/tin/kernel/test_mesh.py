@@ -70,6 +70,7 @@ def points_for(rng, kind, least, most):
             return xy
 
 
+@pytest.mark.each_value
 @pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.parametrize("seed", range(15))
 def test_inserting_and_removing_in_any_order_leaves_a_fresh_triangulation(kind, seed):
@@ -110,6 +111,7 @@ def forced(places, segments, alive):
     return mesh.arrays()
 
 
+@pytest.mark.each_value
 @pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.parametrize("seed", range(15))
 def test_fixed_edges_whatever_their_order_and_what_comes_and_goes_between(kind, seed):

@@ -456,7 +456,7 @@ def test_needles_far_from_the_origin():
 small = st.tuples(st.integers(0, 6), st.integers(0, 6))
 
 
-@settings(max_examples=150)
+@settings(max_examples=50)
 @given(
     st.sets(small, min_size=4, max_size=25),
     st.lists(st.tuples(small, small), max_size=3),

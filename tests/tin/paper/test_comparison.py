@@ -48,6 +48,7 @@ def areas_by_shapely(points, triangles):
     return shapely.union_all(both).area, hull.area - shapely.union_all(shapes).area
 
 
+@pytest.mark.each_value
 @pytest.mark.parametrize(("n", "seed"), [(30, 0), (30, 7), (50, 35), (60, 19), (75, 2)])
 @pytest.mark.parametrize("empty", ["angle", "open"])
 def test_areas_are_those_of_shapely(n, seed, empty):

@@ -152,13 +152,14 @@ def finished(uses):
     return {v for edge in uses for v in edge} - once
 
 
+@pytest.mark.each_value
 @pytest.mark.parametrize("removal", [True, False])
 @pytest.mark.parametrize(
     ("grow", "rule"),
     list(zip(ALL, [widest, closest_or_widest, closest, widest_then_closest], strict=True)),
     ids=["original", "improved", "open", "ties"],
 )
-@settings(max_examples=60)
+@settings(max_examples=20)
 @given(
     places=point_sets.places(st.integers(0, 6), 10, least=4).filter(
         lambda places: any(oracles.orientation(*places[:2], one) for one in places)
@@ -347,7 +348,7 @@ def test_counts_of_two_triangles():
 
 
 @pytest.mark.parametrize("grow", ALL)
-@settings(max_examples=60)
+@settings(max_examples=25)
 @given(places=point_sets.places(st.integers(0, 4), 12, unique=False))
 def test_ends_on_small_grids_and_uses_no_edge_thrice(grow, places):
     distinct = list(dict.fromkeys(places))

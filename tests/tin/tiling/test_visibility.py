@@ -98,6 +98,7 @@ def find_seen_plainly(tin, start):
     return found
 
 
+@pytest.mark.each_value
 @pytest.mark.parametrize("decimals", [1, 3])
 @pytest.mark.parametrize("seed", range(3))
 def test_what_is_seen_is_what_the_twin_sees(seed, decimals):

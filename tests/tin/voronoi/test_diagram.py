@@ -106,7 +106,7 @@ def assert_nearest(diagram, points, count=2000, seed=5):
 # ------------------------------------------------------------------ second opinions
 
 
-@settings(max_examples=60)
+@settings(max_examples=25)
 @given(
     places(st.integers(0, 6), 14),
     st.sampled_from([0, 1, 2.5]),

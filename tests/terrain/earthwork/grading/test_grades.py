@@ -53,6 +53,7 @@ PADS = [
 ]
 
 
+@pytest.mark.each_value
 @pytest.mark.parametrize("pad", PADS)
 @pytest.mark.parametrize("seed", [0, 1])
 def test_hilly_ground_agrees_with_a_fine_raster(pad, seed):

@@ -189,6 +189,7 @@ def shift_star(seed, way, **options):
     return ts.triangulate(np.add(star.points, [*way, 0.0]), boundary=[ring], **options)
 
 
+@pytest.mark.each_value
 @pytest.mark.parametrize("way", [(90, 10), (-100, 95), (0, -85), (300, 0)])
 @pytest.mark.parametrize("limit", [None, 12.0])
 def test_a_patch_beyond_the_base_makes_it_larger(way, limit):
