@@ -17,8 +17,8 @@ from tinsmith.terrain.viewer import opengl
 from tinsmith.tin import TinsmithError
 
 # A timing is never a test; a test that hangs ends at pytest's own limit. The same commit is tested
-# with the same examples, few where campaigns draw thousands of the same; --hypothesis-profile=explore
-# draws others each time, and more.
+# with the same examples, few where campaigns draw thousands; --hypothesis-profile=explore draws
+# others each time, and more.
 hypothesis.settings.register_profile("explore", deadline=None)
 hypothesis.settings.register_profile(
     "tinsmith", deadline=None, derandomize=True, database=None, max_examples=30

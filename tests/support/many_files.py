@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import random
 from concurrent.futures import Executor, Future
+from typing import ClassVar
 
 import numpy as np
 
@@ -42,7 +43,7 @@ class Shuffled(Executor):
 class KeptProcesses(Processes):
     """Processes that wait for the tasks of further runs: starting them takes longer than tasks."""
 
-    waiting = {}
+    waiting: ClassVar[dict] = {}
 
     def start(self):
         """Return the pool, that of an earlier run if there is one."""

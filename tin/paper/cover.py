@@ -8,7 +8,6 @@ south to north.
 
 from __future__ import annotations
 
-from itertools import pairwise
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -20,6 +19,9 @@ if TYPE_CHECKING:
 
 _LINES = 4_000
 """Lines across the sweep, at least: where edges cross, areas are good to about one in as many."""
+
+_MOST_CROSSINGS = 1_000_000
+"""Of edges and lines that are looked at together."""
 
 
 class Cover(NamedTuple):
@@ -54,34 +56,39 @@ def cover(points: Float64Array, triangles: Int32Array, hull: Int32Array) -> Cove
     # An edge that runs north has its triangle in the west: eastwards, the triangle ends there.
     step = np.where(xy[edges[:, 0], 1] < xy[edges[:, 1], 1], -weights, weights)
     overlap = gap = 0.0
-    for middle, height in _walk_strips(np.concatenate([south[:, 1], north[:, 1]])):
-        crossed = (south[:, 1] < middle) & (middle < north[:, 1])
-        width = _measure_widths(south[crossed], north[crossed], step[crossed], middle)
-        overlap += height * width.overlap
-        gap += height * width.gap
+    for middle, height in _walk_strips(np.concatenate([south[:, 1], north[:, 1]]), len(step)):
+        found = _measure_areas(south, north, step, middle, height)
+        overlap += found.overlap
+        gap += found.gap
     return Cover(overlap, gap)
 
 
-def _walk_strips(y: Float64Array) -> Iterator[tuple[float, float]]:
-    """Yield middle and height of strips that no edge begins or ends in."""
+def _walk_strips(y: Float64Array, edges: int) -> Iterator[tuple[Float64Array, Float64Array]]:
+    """Yield middles and heights of strips that no edge begins or ends in, many at a time."""
     if len(y) == 0:
         return
     levels = np.union1d(y, np.linspace(y.min(), y.max(), _LINES))
-    for low, high in pairwise(levels.tolist()):
-        middle = low + (high - low) / 2
-        if low < middle < high:
-            yield middle, high - low
+    low, high = levels[:-1], levels[1:]
+    middle = low + (high - low) / 2
+    is_between = (low < middle) & (middle < high)
+    middle, height = middle[is_between], (high - low)[is_between]
+    size = max(1, _MOST_CROSSINGS // edges)
+    for start in range(0, len(middle), size):
+        yield middle[start : start + size], height[start : start + size]
 
 
-def _measure_widths(
+def _measure_areas(
     south: Float64Array,
     north: Float64Array,
     step: Int64Array,
-    y: float,
+    y: Float64Array,
+    height: Float64Array,
 ) -> Cover:
-    """Return the lengths, along a line from west to east, of surplus and of lack."""
-    x = south[:, 0] + (north - south)[:, 0] * ((y - south[:, 1]) / (north - south)[:, 1])
-    order = np.argsort(x, kind="stable")
-    surplus = np.cumsum(step[order])[:-1]
-    width = np.diff(x[order])
-    return Cover(float(width[surplus > 0].sum()), float(width[surplus < 0].sum()))
+    """Return the areas of surplus and of lack in strips, by lines from west to east in them."""
+    strip, edge = np.nonzero((south[:, 1] < y[:, None]) & (y[:, None] < north[:, 1]))
+    low, across = south[edge], north[edge] - south[edge]
+    x = low[:, 0] + across[:, 0] * ((y[strip] - low[:, 1]) / across[:, 1])
+    order = np.lexsort((x, strip))  # along one line after the other, each of which ends with 0
+    surplus = np.cumsum(step[edge][order])[:-1]
+    area = np.diff(x[order]) * height[strip[order][:-1]]
+    return Cover(float(area[surplus > 0].sum()), float(area[surplus < 0].sum()))

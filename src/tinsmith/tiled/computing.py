@@ -34,8 +34,9 @@ if TYPE_CHECKING:
     from .lines import GivenLines
     from .running import How, Phase
 
-_LATTICE = 1024
+_FEWEST_CELLS, _MOST_CELLS = 64, 1024
 """Rows and columns of the cells in which points are counted before tiles are cut."""
+_CELLS_OF_A_POINT = 16
 _SUFFIX = ".run"
 _POINTS = "points"
 _OTHERS = "others"
@@ -280,7 +281,10 @@ def _find_tiles(
     """Return the tiles of a run: those with which it was begun, else new ones."""
     path = run.folder / _TILES
     if not path.exists():
-        counts = count_by_cells(points.open().chunks, points.bounds, _LATTICE)
+        side = _FEWEST_CELLS
+        while side < _MOST_CELLS and side**2 < _CELLS_OF_A_POINT * max(points.count, how.tiles):
+            side *= 2
+        counts = count_by_cells(points.open().chunks, points.bounds, side)
         found = cut(counts, points.bounds, most=how.tile_points, fewest_tiles=how.tiles)
         with replacing(path, binary=False) as file:
             json.dump([[one.key, list(asdict(one.box).values()), one.count] for one in found], file)

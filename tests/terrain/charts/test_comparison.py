@@ -18,10 +18,14 @@ COLORS = ["#ffffff", "#f2b134", "#c8371b"]
 
 
 @cache
+def compare(*shape):
+    return ts.tin.compare(np.random.default_rng(9).random((40, 3)) * shape)
+
+
 def compared(*, width=1.0, height=1.0, count=40):
     """A comparison of 40 points; those beyond are in no triangle."""
     shape = width, height, 1.0
-    found = ts.tin.compare(np.random.default_rng(9).random((40, 3)) * shape)
+    found = compare(*shape)
     more = np.random.default_rng(8).uniform(0.3, 0.6, (count - 40, 3)) * shape
     return replace(found, points=np.concatenate([found.points, more]))
 
