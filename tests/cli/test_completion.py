@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 import shutil
 import sys
+from functools import cache
 from importlib import import_module
 
 import click
@@ -110,15 +111,20 @@ def test_every_command_has_its_line_in_the_help():
             assert isinstance(command, Command)
 
 
+@cache
+def show_help(name):
+    return run_command(name, "--help").output
+
+
 @pytest.mark.parametrize("name", SUMMARIES)
 def test_every_option_is_listed_once_under_a_subject(name):
     command = main.get_command(click.Context(main), name)
-    output = run_command(name, "--help").output
+    output = show_help(name)
     for option in command.params:
         if isinstance(option, click.Option):
             lister = LISTED_BY.get(getattr(option, "subject", ""), name)
             is_elsewhere = lister != name
-            place = run_command(lister, "--help").output if is_elsewhere else output
+            place = show_help(lister) if is_elsewhere else output
             assert option.opts[-1] in place
             assert any(
                 re.match(rf" *(-\w, )?{option.opts[-1]}( |$)", one) for one in place.splitlines()

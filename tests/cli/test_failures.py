@@ -216,9 +216,9 @@ def test_an_unknown_format_is_wrong_usage(folder, flag):
 
 
 def test_levels_beyond_all_bounds_are_wrong_usage(folder):
-    """Cells of a chequerboard, each crossed by 60,000 levels."""
-    x, y = (axis.ravel() for axis in np.meshgrid(np.arange(200), np.arange(200)))
-    rows = np.column_stack([x, y, (x + y) % 2 * 6000])
+    """Cells of a chequerboard, each crossed by 99,000 levels."""
+    x, y = (axis.ravel() for axis in np.meshgrid(np.arange(120), np.arange(120)))
+    rows = np.column_stack([x, y, (x + y) % 2 * 9_900])
     np.savetxt("in.csv", rows, "%d", delimiter=",", header="x,y,z", comments="")
     for product in ([], ["--bands"]):
         command = ["contours", "in.csv", "--interval", "0.1", "-o", "out.geojson", *product]

@@ -41,3 +41,8 @@ def mark_other_cases(items: Iterable[pytest.Function]) -> None:
         chosen = choose_cases([tuple(map(id, case.callspec.params.values())) for case in cases])
         for case in set(cases).difference(cases[k] for k in chosen):
             case.add_marker(pytest.mark.proof)
+
+
+def list_seeds(count: int, *, few: int) -> list[object]:
+    """Return the numbers below a count; those beyond a few are proofs."""
+    return [k if k < few else pytest.param(k, marks=pytest.mark.proof) for k in range(count)]

@@ -3,9 +3,18 @@
 from __future__ import annotations
 
 import pytest
-from support.many_files import write_lidar
+from support.many_files import KeptProcesses, write_lidar
 
 import tinsmith as ts
+
+
+@pytest.fixture(scope="session", autouse=True)
+def kept_processes():
+    """Use the processes of one call for the next."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("tinsmith.tiled.running.how.Processes", KeptProcesses)
+        yield
+    KeptProcesses.end()
 
 
 @pytest.fixture(scope="module")

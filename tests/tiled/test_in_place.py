@@ -109,11 +109,11 @@ def test_cells_are_those_in_memory_for_any_tiles_and_lines(kind, tmp_path):
     write, name, options = SOURCES[kind]
     path = write(tmp_path / name)
     lines = {"breaklines": [BREAKLINE]}
-    for given in ({}, lines):
+    for given, several in (({}, (1, 16)), (lines, (4,))):
         tin = ts.triangulate(ts.read(path, **options), **given)
         wanted = ts.rasterize(tin, spacing=1.0).bands["elevation"]
         cloud = ts.tiles(path, in_place=True, **options, **given)
-        for tiles in (1, 4, 16):
+        for tiles in several:
             made = cloud.rasterize(
                 tmp_path / "made.tif", spacing=1.0, tiles=tiles, executor=Shuffled(tiles)
             )

@@ -21,7 +21,7 @@ def share_of_plain(outcomes: Counter[str]) -> float:
 
 
 def test_plain_tables_are_read_and_no_table_is_read_wrong():
-    outcomes = count_outcomes(seed=3, cases=400)
+    outcomes = count_outcomes(seed=3, cases=150)
     assert share_of_plain(outcomes) >= PLAIN_SHARE, outcomes
     assert outcomes["contradictory: refused"] > outcomes["contradictory: read"]
 

@@ -52,6 +52,7 @@ SOUND = {
 }
 
 
+@pytest.mark.each_value
 @pytest.mark.parametrize("case", SOUND)
 def test_blocks_are_the_whole(tmp_path, small_blocks, case):
     lines, options = SOUND[case]

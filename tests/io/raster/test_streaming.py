@@ -62,6 +62,7 @@ OPTIONS = [
 ]
 
 
+@pytest.mark.each_value
 @pytest.mark.parametrize("options", OPTIONS, ids=str)
 def test_strips_are_the_whole(tmp_path, strips, options):
     require_same(write(tmp_path / "dem.tif", blockysize=4, tiled=False), **options)

@@ -8,6 +8,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 import shapely
+from support.each_value import list_seeds
 from support.isolines import area_between
 
 import tinsmith as ts
@@ -61,7 +62,7 @@ def integer_tin(rng):
     return ts.triangulate(points[kept], max_edge=rng.choice([None, 1.5]))
 
 
-@pytest.mark.parametrize("seed", range(150))
+@pytest.mark.parametrize("seed", list_seeds(150, few=40))
 def test_bands_of_small_integer_grids_are_those_of_fractions(seed):
     rng = np.random.default_rng(seed)
     try:
@@ -74,7 +75,7 @@ def test_bands_of_small_integer_grids_are_those_of_fractions(seed):
     assert found.columns["area"] == pytest.approx(exact_areas(tin, bounds), rel=1e-12)
 
 
-@pytest.mark.parametrize("seed", range(8))
+@pytest.mark.parametrize("seed", list_seeds(8, few=3))
 def test_bands_of_survey_points_tile_the_surface(seed):
     rng = np.random.default_rng(seed)
     n = int(rng.integers(10, 500))

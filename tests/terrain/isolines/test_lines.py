@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from contourpy import contour_generator  # noqa: F401 - matplotlib draws with it
 from matplotlib import _tri
+from support.each_value import list_seeds
 from support.isolines import level_segments, rounded_segments, segments_of_lines
 
 import tinsmith as ts
@@ -121,7 +122,7 @@ def test_a_saddle_at_the_level_keeps_two_lines_that_touch():
     assert all(any((line[:, :2] == (2, 2)).all(axis=1)) for line in lines_of(found))
 
 
-@pytest.mark.parametrize("seed", range(150))
+@pytest.mark.parametrize("seed", list_seeds(150, few=40))
 def test_segments_are_those_of_fractions_on_small_integer_grids(seed):
     rng = np.random.default_rng(seed)
     tin = grid_tin(rng, int(rng.integers(3, 8)), int(rng.integers(1, 6)))

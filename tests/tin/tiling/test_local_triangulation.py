@@ -63,7 +63,7 @@ def test_looking_at_some_points_first_changes_nothing(name, monkeypatch):
     monkeypatch.setattr(local_triangulation, "_WORTH_LOOKING", 0)
     points = lift(CLOUDS[name])
     margin = float(np.ptp(points[:, 0])) / 50
-    require_triangles_of_the_whole(points, divide(points, 4), margin=margin)
+    require_triangles_of_the_whole(points, divide(points, 2), margin=margin)
 
 
 def test_few_points_are_read():
