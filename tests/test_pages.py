@@ -137,6 +137,7 @@ def run_line(command):
     return done.exit_code, done.output
 
 
+@pytest.mark.slow
 @LOSSES
 @pytest.mark.parametrize("page", [*filter(list_commands, PAGES)], ids=name_page)
 def test_commands_of_the_pages_run(page, folder, can_draw):

@@ -352,6 +352,7 @@ def names_of_pages(tmp_path, monkeypatch):
     return {"ts": ts, "np": np, "survey": survey} | surfaces | lines | rings | edge | points
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("page", PAGES, ids=name_page)
 def test_python_of_the_pages_runs(page, names_of_pages):
     """Run the blocks of a page, one after the other."""

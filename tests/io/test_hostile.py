@@ -324,6 +324,7 @@ def test_a_drawing_that_never_ends_is_given_up(tmp_path, hurry, content):
     assert "a.dxf" in refused(read, path, ReadError)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("suffix", [".vtu", ".vtp"])
 def test_vtk_files_with_two_flipped_bits_leave_the_program_alive(tmp_path, suffix):
     pytest.importorskip("pyvista")

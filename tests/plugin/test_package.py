@@ -10,6 +10,7 @@ import xml.etree.ElementTree as ET
 import zipfile
 from pathlib import Path
 
+import pytest
 from click.testing import CliRunner
 from support import processes
 from support.qgis_plugin import PLUGIN, ROOT
@@ -105,6 +106,7 @@ def test_the_command_begins_its_version_as_the_plugin_expects():
     assert said[:2] == ["tinsmith", tinsmith.__version__]
 
 
+@pytest.mark.slow
 def test_types_of_the_plugin():
     options = ("--config-file", str(ROOT / "pyproject.toml"), "--allow-subclassing-any")
     mypy = str(Path(sys.executable).parent / "mypy")

@@ -2,7 +2,7 @@
 
 A test marked ``each_value`` has parameters of which each was proven by itself, such as products and
 formats: `make test` runs as many cases as the longest list of values has, each with the least used
-values of the other lists. `make proof` runs the others, too.
+values of the other lists. `make proof` runs the others, or `make slow` where ``others="slow"`` is given.
 """
 
 from __future__ import annotations
@@ -32,15 +32,16 @@ def choose_cases(cases: Sequence[tuple[object, ...]]) -> list[int]:
 
 
 def mark_other_cases(items: Iterable[pytest.Function]) -> None:
-    """Mark the cases of tests marked ``each_value`` that are not chosen as proofs."""
+    """Mark the cases of tests marked ``each_value`` that are not chosen as proofs, or slow."""
     tests = defaultdict(list)
     for item in items:
         if item.get_closest_marker("each_value"):
             tests[item.parent.nodeid, item.originalname].append(item)
     for cases in tests.values():
         chosen = choose_cases([tuple(map(id, case.callspec.params.values())) for case in cases])
+        others = cases[0].get_closest_marker("each_value").kwargs.get("others", "proof")
         for case in set(cases).difference(cases[k] for k in chosen):
-            case.add_marker(pytest.mark.proof)
+            case.add_marker(others)
 
 
 def list_seeds(count: int, *, few: int) -> list[object]:

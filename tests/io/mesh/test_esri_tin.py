@@ -56,6 +56,7 @@ def test_the_folder_or_any_file_in_it(name):
     assert len(ts.read(PLAIN / name).triangles) == 528
 
 
+@pytest.mark.slow
 def test_qgis_sees_the_same(tmp_path):
     sources = (PLAIN, HOLES)
     found = open_all_in_qgis([source / "tnxy.adf" for source in sources], tmp_path)

@@ -44,6 +44,7 @@ def test_meshio_free_reading_of_our_rows(tmp_path):
     assert np.array_equal(faces[:, 1:] - 1, tin.triangles)
 
 
+@pytest.mark.slow
 def test_qgis_opens_our_2dm(tmp_path):
     tin = hills()
     seen = open_in_qgis(ts.write(tin, tmp_path / "a.2dm"), tmp_path)

@@ -61,6 +61,7 @@ def test_a_large_tin_with_lines_is_known_by_its_convention(tmp_path):
     assert np.array_equal(ts.read(path).points, tin.points)
 
 
+@pytest.mark.slow
 def test_qgis_opens_our_ugrid(tmp_path):
     """One QGIS opens them all: it takes half a second to start."""
     names = ("EPSG:32616", "EPSG:2274", "EPSG:25832+7837")

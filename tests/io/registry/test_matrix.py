@@ -326,6 +326,7 @@ def run_qgis(folder, *paths):
     return json.loads(done.stdout.splitlines()[-1])
 
 
+@pytest.mark.slow
 def test_a_tin_opens_in_qgis(tmp_path):
     tin = make("TIN")
     paths = [ts.write(tin, tmp_path / name) for name in ("a.ply", "a.gpkg")]

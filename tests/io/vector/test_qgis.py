@@ -8,6 +8,8 @@ from support.qgis_layers import open_layers_in_qgis
 
 import tinsmith as ts
 
+pytestmark = pytest.mark.slow
+
 pytest.importorskip("pyogrio")
 CORNER = np.array([752_640.0, 4_024_180.0, 300.0])
 UTM = "EPSG:32616"

@@ -378,6 +378,7 @@ def test_the_tints_stay_where_there_is_no_picture(tmp_path):
     assert np.abs(draped[~upper] - tinted[~upper]).max() <= 1
 
 
+@pytest.mark.slow
 def test_all_surfaces_of_a_page_are_draped(tmp_path):
     tin = make_square()
     raised = ts.TIN.from_triangles(
@@ -460,6 +461,7 @@ def test_glb_takes_the_same_picture(tmp_path):
     assert b"image/" in made.read_bytes()
 
 
+@pytest.mark.slow
 def test_the_command_drapes(tmp_path):
     surface = ts.write(make_square(), tmp_path / "a.ply")
     write_raster(tmp_path / "far.tif", paint_quarters(20),

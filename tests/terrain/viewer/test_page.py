@@ -96,6 +96,7 @@ def test_numbers_are_read_to_a_millimetre():
     assert content(ts.preview(hills(50)).to_html())["decimals"] == [3, 3]
 
 
+@pytest.mark.slow
 def test_one_blunder_hides_no_relief(tmp_path):
     """Tints, contours and the first view are those of the ground; the note tells of the blunder."""
     points = hills(300).points.copy()
@@ -123,6 +124,7 @@ def test_nothing_outside_is_asked_for():
     assert "default-src 'none'" in page
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("title", ["</script><script>alert(1)</script>", "x" * 10_000, "a\nb\0c"])
 def test_hostile_names_stay_words(title, tmp_path):
     tin = ts.triangulate(
@@ -161,6 +163,7 @@ def run(page, code):
     return page.evaluate(f"window.terrain.then((p) => {{ {code} }})")
 
 
+@pytest.mark.slow
 def test_the_canvas_is_not_blank(opened):
     page, _ = opened
     colours = run(
@@ -176,6 +179,7 @@ def test_the_canvas_is_not_blank(opened):
     assert colours > 100
 
 
+@pytest.mark.slow
 def test_a_pick_is_what_the_surface_says(opened):
     page, tin = opened
     found = run(
@@ -193,6 +197,7 @@ def test_a_pick_is_what_the_surface_says(opened):
     assert np.abs(truth - places[:, 2]).max() < 0.002
 
 
+@pytest.mark.slow
 def test_the_words_under_the_pointer(opened):
     page, tin = opened
     words = run(page, "p.tool.read(600, 420); return p.tool.readout.textContent;")
@@ -205,6 +210,7 @@ def test_the_words_under_the_pointer(opened):
     assert ts.slope(tin)[triangle] == pytest.approx(steep, abs=0.06)
 
 
+@pytest.mark.slow
 def test_distance_and_profile(opened):
     page, tin = opened
     length, pieces, marked, words = run(
@@ -229,6 +235,7 @@ def test_distance_and_profile(opened):
     assert abs(len(expected) - len(distances)) <= 2
 
 
+@pytest.mark.slow
 def test_area_of_a_polygon(opened):
     page, _ = opened
     area, corners = run(
@@ -246,6 +253,7 @@ def test_area_of_a_polygon(opened):
     assert area == pytest.approx(shapely.Polygon(corners).area, rel=1e-5)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("switch", ["contours", "edges", "points"])
 def test_switches_change_the_picture(opened, switch):
     page, _ = opened
@@ -261,6 +269,7 @@ def test_switches_change_the_picture(opened, switch):
     assert pictures[0] == pictures[2]
 
 
+@pytest.mark.slow
 def test_every_tint_is_another_picture(opened):
     page, _ = opened
     pictures = run(
@@ -273,6 +282,7 @@ def test_every_tint_is_another_picture(opened):
     assert len(set(pictures)) == 4
 
 
+@pytest.mark.slow
 def test_exaggeration_moves_the_ground(opened):
     page, _ = opened
     heights = run(
@@ -286,6 +296,7 @@ def test_exaggeration_moves_the_ground(opened):
     assert heights[0] != pytest.approx(heights[1], abs=3)
 
 
+@pytest.mark.slow
 def test_keys_turn_move_and_look_from_above(opened):
     page, _ = opened
     page.focus("#view")
@@ -300,6 +311,7 @@ def test_keys_turn_move_and_look_from_above(opened):
     page.keyboard.press("h")
 
 
+@pytest.mark.slow
 def test_two_surfaces_have_cut_and_fill(tmp_path):
     ground, design = hills(), hills()
     raised = design.points + np.array([0, 0, 1.5])
@@ -316,6 +328,7 @@ def test_two_surfaces_have_cut_and_fill(tmp_path):
     assert most == pytest.approx(1.5, abs=0.001)
 
 
+@pytest.mark.slow
 def test_without_webgl_there_is_a_still_picture(tmp_path):
     path = ts.preview(hills()).save(tmp_path / "a.html")
     with open_page(path, webgl=False) as page:

@@ -319,6 +319,7 @@ def test_without_a_display_a_window_is_refused(monkeypatch):
         preview(hill(steps=3)).show()
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("can_draw")
 def test_another_process_draws_without_a_word_on_stderr(tmp_path):
     code = (
