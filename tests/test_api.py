@@ -103,7 +103,6 @@ ignore_errors = True
 ignore_missing_imports = True
 """
 PYRIGHT = {
-    "include": ["program.py"],
     "extraPaths": ["installed"],
     "typeCheckingMode": "strict",
     "pythonVersion": "3.11",
@@ -149,56 +148,39 @@ def users_folder(tmp_path_factory):
     for name in ("tin", "io", "terrain"):
         (package / name).symlink_to(ROOT / name)
     (folder / "mypy.ini").write_text(MYPY)
-    (folder / "pyrightconfig.json").write_text(json.dumps(PYRIGHT))
     return folder
 
 
-def run_mypy(folder):
+def run_mypy(folder, files):
     # In the repository's root mypy would take its folder "io" for Python's own.
-    options = ["--config-file", "mypy.ini", "--cache-dir", "cache", "program.py"]
+    options = ["--config-file", "mypy.ini", "--cache-dir", "cache", *files]
     command = [str(Path(sys.executable).parent / "mypy"), *options]
     return run(*command, cwd=folder, MYPYPATH="installed").stdout
 
 
-def run_pyright(folder):
+def run_pyright(folder, files):
     """Run the pyright whose wheel brings all that it needs."""
+    (folder / "pyrightconfig.json").write_text(json.dumps({"include": files, **PYRIGHT}))
     return run(
         *(sys.executable, "-m", "basedpyright", "--pythonpath", sys.executable), cwd=folder
     ).stdout
 
 
-@pytest.fixture(params=[run_mypy, run_pyright])
-def judge(request, users_folder):
-    """Return a function that has a type checker judge a user's program, strictly."""
-
-    def judge(text):
-        (users_folder / "program.py").write_text(text)
-        found = request.param(users_folder)
-        assert re.search("Success|errors?", found), found
-        lines = re.findall(r"program.py:(\d+):(?:\d+ -)? error", found)
-        return sorted({int(line) for line in lines}), found
-
-    return judge
-
-
 @pytest.mark.slow
-def test_the_readme_passes_type_checkers(judge):
-    text = (ROOT / "README.md").read_text()
-    lines, found = judge("\n".join(re.findall(r"```python\n(.*?)```", text, re.DOTALL)))
-    assert lines == [], found
-
-
-@pytest.mark.slow
-def test_flat_names_and_those_of_packages_pass_type_checkers(judge):
-    lines, found = judge(FLAT)
-    assert lines == [], found
-
-
-@pytest.mark.slow
-def test_type_checkers_refuse_names_that_are_not_there(judge):
-    lines, found = judge(TYPOS)
-    assert lines == [5, 6, 7, 8, 9, 10, 11, 12, 13, 14], found
-    notes = dict(re.findall(r"program.py:(\d+):.*(?:note|information): (.*)", found))
+@pytest.mark.parametrize("run_checker", [run_mypy, run_pyright])
+def test_type_checkers_take_users_programs_and_refuse_names_that_are_not_there(
+    run_checker, users_folder
+):
+    """In one run, strictly: the README, flat names and those of packages, and typos."""
+    readme = re.findall(r"```python\n(.*?)```", (ROOT / "README.md").read_text(), re.DOTALL)
+    programs = {"readme.py": "\n".join(readme), "flat.py": FLAT, "typos.py": TYPOS}
+    for name, text in programs.items():
+        (users_folder / name).write_text(text)
+    found = run_checker(users_folder, list(programs))
+    lines = re.findall(r"(\w+\.py):(\d+):(?:\d+ -)? error", found)
+    wrong = {name: sorted({int(line) for one, line in lines if one == name}) for name in programs}
+    assert wrong == {"readme.py": [], "flat.py": [], "typos.py": [*range(5, 15)]}, found
+    notes = dict(re.findall(r"typos.py:(\d+):.*(?:note|information): (.*)", found))
     assert "TIN, *, unit: " in notes["15"], found
     assert "int" in notes["16"], found
 

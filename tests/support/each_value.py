@@ -2,7 +2,7 @@
 
 A test marked ``each_value`` has parameters of which each was proven by itself, such as products and
 formats: `make test` runs as many cases as the longest list of values has, each with the least used
-values of the other lists. `make proof` runs the others, or `make slow` where ``others="slow"`` is given.
+of the other lists. `make proof` runs the others, or `make slow` where it is ``others="slow"``.
 """
 
 from __future__ import annotations
