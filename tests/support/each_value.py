@@ -32,11 +32,15 @@ def choose_cases(cases: Sequence[tuple[object, ...]]) -> list[int]:
 
 
 def mark_other_cases(items: Iterable[pytest.Function]) -> None:
-    """Mark the cases of tests marked ``each_value`` that are not chosen as proofs, or slow."""
+    """Mark the cases of tests marked ``each_value`` that are not chosen as proofs, or slow.
+
+    Of those that are slow themselves others are chosen, and proofs stay what they are.
+    """
     tests = defaultdict(list)
     for item in items:
-        if item.get_closest_marker("each_value"):
-            tests[item.parent.nodeid, item.originalname].append(item)
+        if item.get_closest_marker("each_value") and not item.get_closest_marker("proof"):
+            is_slow = item.get_closest_marker("slow") is not None
+            tests[item.parent.nodeid, item.originalname, is_slow].append(item)
     for cases in tests.values():
         chosen = choose_cases([tuple(map(id, case.callspec.params.values())) for case in cases])
         others = cases[0].get_closest_marker("each_value").kwargs.get("others", "proof")

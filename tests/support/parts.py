@@ -10,10 +10,9 @@ import numpy as np
 from tinsmith.tin.tiling.boxes import widen
 from tinsmith.tin.tiling.local_triangulation import triangulate_box
 
+from .each_value import list_seeds
 from .point_cells import PointCells
 from .tiled import divide
-
-SIDES = (1, 2, 4)
 
 
 def _rng(seed):
@@ -92,11 +91,22 @@ class Tiling:
         return found
 
 
+WAYS = (("even", 1), ("even", 2), ("even", 4), ("through points", 2), ("through points", 4))
+"""Of tilings: 1, 4 and 16 tiles, even ones and such whose sides go through points."""
+
+TURNS = list_seeds(2, few=1)
+"""With one of them every way is that of half of the clouds, with both of all."""
+
+
 @cache
-def find_tilings(name):
-    """Return the points of a cloud in 1, 4 and 16 tiles, even ones and through points."""
+def tile_cloud(name, kind, side):
+    """Return the points of a cloud in tiles."""
     points = CLOUDS[name]
-    return [
-        *(Tiling(divide(points, side)) for side in SIDES),
-        *(Tiling(divide_at_points(points, side, seed=side)) for side in SIDES[1:]),
-    ]
+    if kind == "even":
+        return Tiling(divide(points, side))
+    return Tiling(divide_at_points(points, side, seed=side))
+
+
+def find_tilings(name, turn):
+    """Return a cloud in tiles in every other way, that of the next cloud in the others."""
+    return [tile_cloud(name, *way) for way in WAYS[([*CLOUDS].index(name) + turn) % 2 :: 2]]

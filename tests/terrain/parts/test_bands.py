@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from support.parts import CLOUDS, Tiling, find_tilings
+from support.parts import CLOUDS, TURNS, Tiling, find_tilings
 from support.point_sets import points as make_points
 from support.product_parts import join_bands, require_same_features
 from support.tiled import divide
@@ -14,11 +14,12 @@ from tinsmith.terrain.parts import bands
 
 
 @pytest.mark.parametrize("name", CLOUDS)
-def test_polygons_are_those_of_the_whole(name):
+@pytest.mark.parametrize("turn", TURNS)
+def test_polygons_are_those_of_the_whole(name, turn):
     points = CLOUDS[name]
     given = {"levels": [60.0, 62.5, 70.0, 75.0]} if name == "contours" else {"interval": 2.0}
     whole = ts.contour_bands(ts.triangulate(points), **given)
-    for tiling in find_tilings(name)[::2]:
+    for tiling in find_tilings(name, turn):
         require_same_features(join_bands(tiling, points, given), whole)
 
 

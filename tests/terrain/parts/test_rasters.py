@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from support.parts import CLOUDS, Tiling, divide_at_points, find_tilings
+from support.parts import CLOUDS, TURNS, Tiling, divide_at_points, find_tilings
 from support.product_parts import join_raster, make_grid, require_same_bits
 from support.tiled import divide
 
@@ -28,13 +28,14 @@ def make_grid_of_points(points):
 
 
 @pytest.mark.parametrize("name", CLOUDS)
-def test_blocks_are_those_of_the_whole(name):
+@pytest.mark.parametrize("turn", TURNS)
+def test_blocks_are_those_of_the_whole(name, turn):
     points = CLOUDS[name]
     grids = [make_grid(points, 61)]
     if name.startswith("lattice"):
         grids.append(make_grid_of_points(points))
     tin = ts.triangulate(points)
-    for tiling in find_tilings(name):
+    for tiling in find_tilings(name, turn):
         for grid in grids:
             for value in VALUES:
                 for is_smooth in (False, True) if value != "elevation" else (None,):

@@ -7,7 +7,7 @@ from fractions import Fraction
 import numpy as np
 import pytest
 from support.each_value import list_seeds
-from support.parts import CLOUDS, find_tilings
+from support.parts import CLOUDS, TURNS, find_tilings
 
 import tinsmith as ts
 from tinsmith.terrain.parts import statistics
@@ -20,10 +20,11 @@ from tinsmith.terrain.relief.statistics import (
 @pytest.mark.each_value
 @pytest.mark.parametrize("name", CLOUDS)
 @pytest.mark.parametrize("unit", ["degrees", "percent"])
-def test_statistics_are_those_of_the_whole(name, unit):
+@pytest.mark.parametrize("turn", TURNS)
+def test_statistics_are_those_of_the_whole(name, unit, turn):
     whole = ts.slope_statistics(ts.triangulate(CLOUDS[name]), unit=unit)
     options = statistics.StatisticsOptions(unit)
-    for tiling in find_tilings(name)[::3]:
+    for tiling in find_tilings(name, turn):
         parts = tiling.compute(lambda part, box: statistics.compute_part(part, box, options))
         found = statistics.join(lambda parts=parts: parts)
         assert found == {key: float(column[0]) for key, column in whole.columns.items()}
