@@ -2,6 +2,7 @@
 
 import json
 import re
+import shutil
 
 import pytest
 from support.commands import run_command
@@ -46,16 +47,31 @@ POINTS_ALONE = {"compare", "convert", "ground", "info"}
 """Commands that make no surface, or none of all points: they know what the reader found."""
 
 
-@pytest.fixture
-def folder(tmp_path, monkeypatch):
-    """Return a folder with a hill of which one row is bad and one elevation is 0."""
-    monkeypatch.chdir(tmp_path)
+def write_hill(folder):
+    """Write a hill of which one row is bad and one elevation is 0; return the file."""
     rows = ["number,easting,northing,elevation"]
     for i in range(400):
         x, y = divmod(i, 20)
         z = 0.0 if i == 213 else 320 + 0.05 * x * (20 - x) + 0.1 * y
         rows.append(f"{1000 + i},{700_000 + 5 * x},{4_000_000 + 5 * y},{z:.3f}")
-    (tmp_path / "hill.csv").write_text("\n".join([*rows, "1400,700003,4000003,320..5"]))
+    path = folder / "hill.csv"
+    path.write_text("\n".join([*rows, "1400,700003,4000003,320..5"]))
+    return path
+
+
+@pytest.fixture(scope="module")
+def built(tmp_path_factory):
+    """Return the surface of the hill, in a file."""
+    folder = tmp_path_factory.mktemp("built")
+    run_command("build", write_hill(folder), *CRS, "-o", folder / "hill.gpkg")
+    return folder / "hill.gpkg"
+
+
+@pytest.fixture
+def folder(tmp_path, monkeypatch):
+    """Return a folder with the hill, and what commands take beside it."""
+    monkeypatch.chdir(tmp_path)
+    write_hill(tmp_path)
     flat = [f"{700_001 + 5 * x},{4_000_001 + 5 * y},321" for x in range(10) for y in range(10)]
     (tmp_path / "flat.csv").write_text("\n".join(["easting,northing,elevation", *flat]))
     (tmp_path / "places.csv").write_text("easting,northing\n700040,4000041\n")
@@ -94,8 +110,8 @@ def test_programs_are_told(command, folder):
 
 
 @pytest.mark.parametrize("command", sorted({*COMMANDS} - POINTS_ALONE - {"build", "inspect"}))
-def test_what_a_build_found_is_told_of_its_file(command, folder):
-    run_command("build", "hill.csv", *CRS, "-o", "hill.gpkg")
+def test_what_a_build_found_is_told_of_its_file(command, folder, built):
+    shutil.copy(built, "hill.gpkg")
     done = run_command(command, "hill.gpkg", *COMMANDS[command], "--json", *take_crs(command))
     notes = " ".join(map(str, json.loads(done.stdout)["notes"]))
     assert [one.pattern for one in list_needed(command) if not one.search(notes)] == []
