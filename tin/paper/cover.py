@@ -24,6 +24,14 @@ _MOST_CROSSINGS = 1_000_000
 """Of edges and lines that are looked at together."""
 
 
+class _Edges(NamedTuple):
+    """Southern and northern ends, (n, 2), and by how much an edge changes the cover eastwards."""
+
+    south: Float64Array
+    north: Float64Array
+    step: Int64Array
+
+
 class Cover(NamedTuple):
     """Areas of the places covered more than once, and of those not covered, CRS units squared."""
 
@@ -56,15 +64,17 @@ def cover(points: Float64Array, triangles: Int32Array, hull: Int32Array) -> Cove
     # An edge that runs north has its triangle in the west: eastwards, the triangle ends there.
     step = np.where(xy[edges[:, 0], 1] < xy[edges[:, 1], 1], -weights, weights)
     overlap = gap = 0.0
-    for middle, height in _walk_strips(np.concatenate([south[:, 1], north[:, 1]]), len(step)):
-        found = _measure_areas(south, north, step, middle, height)
+    edges_at_fault = _Edges(south, north, step)
+    for middle, height in _walk_strips(edges_at_fault):
+        found = _measure_areas(edges_at_fault, middle, height)
         overlap += found.overlap
         gap += found.gap
     return Cover(overlap, gap)
 
 
-def _walk_strips(y: Float64Array, edges: int) -> Iterator[tuple[Float64Array, Float64Array]]:
+def _walk_strips(edges: _Edges) -> Iterator[tuple[Float64Array, Float64Array]]:
     """Yield middles and heights of strips that no edge begins or ends in, many at a time."""
+    y = np.concatenate([edges.south[:, 1], edges.north[:, 1]])
     if len(y) == 0:
         return
     levels = np.union1d(y, np.linspace(y.min(), y.max(), _LINES))
@@ -72,19 +82,14 @@ def _walk_strips(y: Float64Array, edges: int) -> Iterator[tuple[Float64Array, Fl
     middle = low + (high - low) / 2
     is_between = (low < middle) & (middle < high)
     middle, height = middle[is_between], (high - low)[is_between]
-    size = max(1, _MOST_CROSSINGS // edges)
+    size = max(1, _MOST_CROSSINGS // len(edges.step))
     for start in range(0, len(middle), size):
         yield middle[start : start + size], height[start : start + size]
 
 
-def _measure_areas(
-    south: Float64Array,
-    north: Float64Array,
-    step: Int64Array,
-    y: Float64Array,
-    height: Float64Array,
-) -> Cover:
+def _measure_areas(edges: _Edges, y: Float64Array, height: Float64Array) -> Cover:
     """Return the areas of surplus and of lack in strips, by lines from west to east in them."""
+    south, north, step = edges
     strip, edge = np.nonzero((south[:, 1] < y[:, None]) & (y[:, None] < north[:, 1]))
     low, across = south[edge], north[edge] - south[edge]
     x = low[:, 0] + across[:, 0] * ((y[strip] - low[:, 1]) / across[:, 1])
