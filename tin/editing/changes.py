@@ -62,16 +62,21 @@ class NumberedInputs(Frozen):
 
     build_inputs: BuildInputs
     """Of the rows and lines that are there."""
-    rows: Int64Array
-    """(n,), the lasting number of each of its rows, ascending."""
+    rows: Int64Array | None
+    """(n,), the lasting number of each of its rows, ascending; None while none was removed."""
     n_rows: int
     """Rows that are or were there."""
 
     @classmethod
     def of(cls, build_inputs: BuildInputs) -> NumberedInputs:
         """Return the inputs of a TIN before its first edit."""
-        count = len(build_inputs.points)
-        return cls(build_inputs=build_inputs, rows=np.arange(count), n_rows=count)
+        return cls(build_inputs=build_inputs, rows=None, n_rows=len(build_inputs.points))
+
+    def find(self, numbers: Int64Array) -> Int64Array:
+        """Return the rows that have these lasting numbers."""
+        if self.rows is None:
+            return numbers
+        return np.searchsorted(self.rows, numbers)
 
     def after(self, changes: Sequence[Change]) -> NumberedInputs:
         """Return the inputs after some changes.
@@ -85,7 +90,7 @@ class NumberedInputs(Frozen):
             return self
         n_rows = self.n_rows + sum(len(change.added) for change in changes)
         points, is_there = np.empty((n_rows, 3)), np.zeros(n_rows, np.bool_)
-        own = self.rows if len(self.rows) < self.n_rows else slice(self.n_rows)
+        own = slice(self.n_rows) if self.rows is None else self.rows
         points[own], is_there[own] = self.build_inputs.points, True
         is_masked = np.zeros(n_rows, np.bool_)
         if self.build_inputs.is_masked is not None:
@@ -99,19 +104,21 @@ class NumberedInputs(Frozen):
             is_there[change.removed] = False
             for line_change in change.lines:
                 lines = line_change(lines)
+        rows = None
         if not is_there.all():
-            points, is_masked = points[is_there], is_masked[is_there]
+            rows = np.flatnonzero(is_there)
+            points, is_masked = points[rows], is_masked[rows]
         masked = is_masked if is_masked.any() else None
         build_inputs = replace(self.build_inputs, points=points, is_masked=masked)
         if lines is not self.build_inputs.lines:
             build_inputs = build_inputs.with_lines(lines)
-        return NumberedInputs(
-            build_inputs=build_inputs, rows=np.flatnonzero(is_there), n_rows=n_rows
-        )
+        return NumberedInputs(build_inputs=build_inputs, rows=rows, n_rows=n_rows)
 
     def build(self) -> Version:
         """Build the TIN of the inputs, whose rows have their lasting numbers."""
         built = assemble(self.build_inputs)
+        if self.rows is None:
+            return built
         vertex_of = np.full(self.n_rows, -1, np.int32)
         vertex_of[self.rows] = built.vertex_of
         report = renumber_rows(built.report, self.rows, self.n_rows)

@@ -112,7 +112,7 @@ class Editor:
         return self.edited.count
 
     def _open(self) -> _kernel.EditedMesh:
-        """Return the vertices, with a mesh of the triangles, to be changed."""
+        """Return the vertices, with their triangles, to be changed."""
         if self._unchanged is not None:
             self.edited.open(*self._unchanged)
             self._unchanged = None
@@ -177,7 +177,7 @@ class Editor:
     def _require_free(self, slots: Int32Array) -> None:
         """Refuse vertices on lines, or near one."""
         for slot in set(slots.tolist()) if self._has_lines else ():
-            if self._mesh.has_fixed_edge(slot) or not self._mesh.clearance(slot) > self._least:
+            if not self._open().is_clear(slot):
                 raise NotLocal
 
     def _take_back(self, slots: Int32Array) -> None:
@@ -259,7 +259,7 @@ class Editor:
         """
         slots = self.edited.slots_of(vertices)
         (slot,) = slots.tolist()
-        if self._has_lines and self._mesh.has_fixed_edge(slot):
+        if self._has_lines and self._open().has_fixed_edge(slot):
             raise NotLocal
         x, y, z = point.tolist()
         if self.edited.point(slot)[:2] != (x, y):
@@ -289,7 +289,7 @@ class Editor:
     def set_elevations(self, vertices: Int64Array, elevations: list[float]) -> Done:
         """Give vertices, and the rows there, other elevations."""
         slots = self.edited.slots_of(vertices).tolist()
-        if self._has_lines and any(map(self._mesh.has_fixed_edge, slots)):
+        if self._has_lines and any(map(self._open().has_fixed_edge, slots)):
             raise NotLocal
         return Done(_join_changes(list(map(self._put_elevation, slots, elevations))))
 

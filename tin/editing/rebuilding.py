@@ -118,7 +118,7 @@ class Rebuild:
         elevation_of[vertices] = elevations
         wanted = elevation_of[version.vertex_of]
         rows = np.flatnonzero(~np.isnan(wanted))
-        points = inputs.build_inputs.points[np.searchsorted(inputs.rows, rows)]
+        points = inputs.build_inputs.points[inputs.find(rows)]
         points[:, 2] = wanted[rows]
         line_vertices = inputs.find_line_vertices(version)
         of_lines = elevation_of[line_vertices]

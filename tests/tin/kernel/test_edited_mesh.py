@@ -245,3 +245,55 @@ def test_wrong_numbers_are_refused(call):
         ValueError, match=r"^(no such|vertices of lines|the mesh (must be|is) open)"
     ):
         call()
+
+
+def make_grid(count):
+    side = int(np.sqrt(count))
+    x, y = np.meshgrid(np.arange(side), np.arange(side))
+    return np.column_stack([x.ravel(), y.ravel(), np.zeros(side * side)]).astype(float)
+
+
+def make_slivers(count):
+    x = np.random.default_rng(2).random(count) * 100.0
+    y = np.append(x[:-1] / 3.0, 80.0)  # collinear but for rounding, and one far from the line
+    return np.column_stack([x, y, np.zeros(count)])
+
+
+POINTS = {
+    "random": np.random.default_rng(1).random((5000, 3)) * [500.0, 500.0, 9.0],
+    "grid": make_grid(2500),
+    "narrow": np.random.default_rng(3).random((3000, 3)) * [9000.0, 2.0, 9.0],
+    "slivers": make_slivers(600),
+}
+
+
+@pytest.mark.parametrize("is_shuffled", [False, True])
+@pytest.mark.parametrize("points", POINTS.values(), ids=POINTS)
+def test_first_edits_of_touched_triangles_lead_where_those_of_all_lead(points, is_shuffled):
+    rng = np.random.default_rng(4)
+    growth = _kernel.grow(points)
+    triangles, neighbors = growth.triangles, growth.neighbors
+    if is_shuffled:  # no order is relied upon
+        order = rng.permutation(len(triangles))
+        number = np.append(np.argsort(order), -1).astype(np.int32)
+        triangles, neighbors = triangles[order], number[neighbors[order]]
+    fixed = np.zeros(triangles.shape, np.bool_)
+    both = [_kernel.EditedMesh(points, 0, 0) for _ in range(2)]
+    for edited in both:
+        edited.open(triangles, neighbors, fixed)
+        edited.lend()
+    assert both[1].mesh.slots == len(points)  # all triangles, from the beginning
+    low, high = points[:, :2].min(axis=0), points[:, :2].max(axis=0)
+    for _ in range(60):
+        kind, vertex = int(rng.integers(3)), int(rng.integers(both[0].count))
+        point = [*rng.uniform(low - 0.1 * (high - low), high).tolist(), 1.0]
+        if kind == INSERT:
+            done = [edited.insert_one([point], "last") for edited in both]
+        elif kind == REMOVE:
+            done = [edited.remove_one(vertex) for edited in both]
+        else:
+            done = [edited.move_one(vertex, point) for edited in both]
+        assert done[0] == done[1]
+    one, other = (edited.mesh.arrays() for edited in both)
+    for found, wanted in zip(one, other, strict=True):
+        np.testing.assert_array_equal(found, wanted)

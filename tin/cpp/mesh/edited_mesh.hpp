@@ -14,6 +14,8 @@
 #include "../base/range.hpp"
 #include "checked_mesh.hpp"
 #include "elevations.hpp"
+#include "mesh_arrays.hpp"
+#include "partial_mesh.hpp"
 #include "vertex_numbers.hpp"
 
 namespace tinsmith {
@@ -37,6 +39,10 @@ struct EditRecord {
   GivenVertex given;
 };
 
+// The first edits copy only the triangles that they touch (partial_mesh.hpp). The mesh of all is
+// made when more is asked for, or after so many edits that it is the quicker one; the edits so far
+// are done again in it. As the triangulation is unique, it makes no difference which it is.
+//
 // An edit of one vertex is done here if it changes nothing but the triangles around it: it is done
 // and logged, or nothing is changed and the caller is told that more is to be done, or to be said.
 class EditedMesh {
@@ -49,9 +55,20 @@ class EditedMesh {
         elevations_(rows.data, static_cast<std::int32_t>(rows.count)),
         numbers_(static_cast<std::int32_t>(rows.count), lines) {}
 
-  // The triangles of all slots, or of those that hold a vertex.
-  void open(CheckedMesh mesh) { mesh_ = std::make_shared<CheckedMesh>(std::move(mesh)); }
-  const std::shared_ptr<CheckedMesh>& mesh() const { return mesh_; }
+  // The triangles of all slots, or of those that hold a vertex; needed until the mesh is whole.
+  void open(const GivenTriangles& given) {
+    given_ = given;
+    part_ = std::make_unique<PartialEditor>(PartialMesh(TouchedTriangles(rows_, given)),
+                                            TouchedPoints(rows_), numbers_.count());
+  }
+  bool is_open() const { return part_ || mesh_; }
+  bool is_whole() const { return mesh_ != nullptr; }
+  // All triangles, with all vertices in their slots.
+  const std::shared_ptr<CheckedMesh>& mesh() {
+    require_open();
+    if (!mesh_) make_whole();
+    return mesh_;
+  }
   void leave_empty(Vertex slot) { numbers_.empty(slot); }
 
   // Vertices that come no nearer than this to an edge around them reach no line; without lines any
@@ -68,7 +85,8 @@ class EditedMesh {
   const VertexNumbers& numbers() const { return numbers_; }
   std::int32_t slots() const { return numbers_.held().slots(); }
   Point place(Vertex slot) const {
-    return mesh_ ? mesh_->editor().point(slot) : rows_[number(slot)];
+    if (mesh_) return mesh_->editor().point(slot);
+    return part_ ? part_->point(slot) : rows_[number(slot)];
   }
   double elevation(Vertex slot) const { return elevations_[slot]; }
 
@@ -78,29 +96,36 @@ class EditedMesh {
   std::int32_t insert(const GivenVertex& given) {
     if (!is_ready() || !given.is_sound() || slots() >= kMostPoints) return kNotDone;
     const Unfinished unfinished(is_sound_);
-    const MeshLocation at = editor().locate(given.place());
     const Vertex slot{slots()};
-    if (can_insert(at)) {
-      editor().add_slot();
-      editor().insert_at(at, given.place(), slot);
-      if (is_clear(slot)) {
-        numbers_.add(true);
-        elevations_.add(given.elevation());
-        return log(EditRecord::Kind::kInsert, numbers_.of(slot), slot, given);
-      }
-      editor().remove(slot);
-      editor().drop_last_slot();
-    }
-    return kNotDone;
+    const bool is_done = with_editor([&](auto& editor) {
+      const MeshLocation at = editor.locate(given.place());
+      if (!can_insert(editor, at)) return false;
+      editor.add_slot();
+      editor.insert_at(at, given.place(), slot);
+      if (is_clear(editor, slot)) return true;
+      editor.remove(slot);
+      editor.drop_last_slot();
+      return false;
+    });
+    if (!is_done) return kNotDone;
+    numbers_.add(true);
+    elevations_.add(given.elevation());
+    note({Step::kInsert, slot, given.place()});
+    return log(EditRecord::Kind::kInsert, numbers_.of(slot), slot, given);
   }
 
   bool remove(std::int32_t vertex) {
     if (!is_ready() || !numbers_.is_vertex(vertex)) return false;
     const Vertex slot = numbers_.slot_of(vertex);
-    if (!is_clear(slot) || !editor().can_remove(slot)) return false;
     const Unfinished unfinished(is_sound_);
-    editor().remove(slot);
+    const bool is_done = with_editor([&](auto& editor) {
+      if (!is_clear(editor, slot) || !editor.can_remove(slot)) return false;
+      editor.remove(slot);
+      return true;
+    });
+    if (!is_done) return false;
     numbers_.empty(slot);
+    note({Step::kRemove, slot, {}});
     log(EditRecord::Kind::kRemove, vertex, slot, {});
     return true;
   }
@@ -108,7 +133,7 @@ class EditedMesh {
   bool move(std::int32_t vertex, const GivenVertex& given) {
     if (!is_ready() || !given.is_sound() || !numbers_.is_vertex(vertex)) return false;
     const Vertex slot = numbers_.slot_of(vertex);
-    if (has_lines_ && editor().has_fixed_edge(slot)) return false;
+    if (has_lines_ && has_fixed_edge(slot)) return false;
     if (!(place(slot) == given.place()) && !move_in_plane(slot, given.place())) return false;
     elevations_.put(slot, given.elevation());
     log(EditRecord::Kind::kMove, vertex, slot, given);
@@ -119,7 +144,7 @@ class EditedMesh {
     if (!is_lent_ || !is_sound_ || !is_elevation(z)) return false;
     if (!numbers_.is_vertex(vertex)) return false;
     const Vertex slot = numbers_.slot_of(vertex);
-    if (has_lines_ && (!mesh_ || editor().has_fixed_edge(slot))) return false;
+    if (has_lines_ && (!is_open() || has_fixed_edge(slot))) return false;
     elevations_.put(slot, z + 0.0);
     log(EditRecord::Kind::kSetElevation, vertex, slot, {place(slot).x, place(slot).y, z});
     return true;
@@ -135,26 +160,59 @@ class EditedMesh {
 
   // As CheckedMesh; a slot is made for each point, and stays empty where there was a vertex.
   void insert_all(const double* rows, std::int32_t count, std::int32_t* result) {
-    std::vector<Point> places(static_cast<std::size_t>(count));
-    for (std::int32_t i = 0; i < count; ++i) places[i] = {rows[3 * i], rows[3 * i + 1]};
+    require_open();
     const std::int32_t first = slots();
-    opened().insert(places.data(), count, result);
+    if (count == 1) {
+      *result = number(insert_one({rows[0], rows[1]}));
+    } else {
+      std::vector<Point> places(static_cast<std::size_t>(count));
+      for (std::int32_t i = 0; i < count; ++i) places[i] = {rows[3 * i], rows[3 * i + 1]};
+      mesh()->insert(places.data(), count, result);
+    }
     for (std::int32_t i = 0; i < count; ++i) {
       numbers_.add(result[i] == first + i);
       elevations_.add(rows[3 * i + 2]);
     }
   }
 
+  // False if no triangle would be left.
   bool empty(Vertex slot) {
-    const std::int32_t vertex = number(slot);
-    if (!opened().remove(&vertex, 1)) return false;
+    require_open();
+    if (!numbers_.held().holds(number(checked(slot)))) {
+      throw std::invalid_argument("there is no such vertex");
+    }
+    const bool is_done = with_editor([&](auto& editor) {
+      if (editor.has_fixed_edge(slot)) {
+        throw std::invalid_argument("a fixed edge ends at the vertex");
+      }
+      if (!editor.can_remove(slot)) return false;
+      editor.remove(slot);
+      return true;
+    });
+    if (!is_done) return false;
     numbers_.empty(slot);
+    note({Step::kRemove, slot, {}});
     return true;
   }
   Vertex fill(Vertex slot, Point p) {
-    const Vertex found = opened().put(slot, p);
-    if (found == slot) numbers_.fill(slot);
+    require_open();
+    if (numbers_.held().holds(number(checked(slot)))) {
+      throw std::invalid_argument("the slot must be one whose vertex was removed");
+    }
+    const Vertex found = with_editor([&](auto& editor) { return editor.insert(p, slot); });
+    if (found != slot) return found;
+    numbers_.fill(slot);
+    note({Step::kFill, slot, p});
     return found;
+  }
+  // Whether the vertex is as far from lines as it must be.
+  bool is_clear(Vertex slot) {
+    require_open();
+    return with_editor([&](auto& editor) { return is_clear(editor, checked(slot)); });
+  }
+  bool has_fixed_edge(Vertex slot) {
+    require_open();
+    return with_editor([&](auto& editor) { return editor.has_fixed_edge(checked(slot)); });
   }
   void put_elevation(Vertex slot, double z) { elevations_.put(checked(slot), z); }
 
@@ -179,36 +237,96 @@ class EditedMesh {
     int errors_;
   };
 
-  bool is_ready() const { return is_lent_ && mesh_ && is_sound_; }
-  MeshEditor& editor() { return mesh_->editor(); }
-  CheckedMesh& opened() {
-    if (!mesh_) throw std::invalid_argument("the mesh must be opened first");
-    return *mesh_;
+  // What was done before there was a mesh of all triangles.
+  struct Step {
+    enum Kind { kInsert, kLeaveEmpty, kRemove, kFill };
+    Kind kind;
+    Vertex slot;
+    Point place;
+  };
+
+  bool is_ready() const { return is_lent_ && is_open() && is_sound_; }
+  void require_open() const {
+    if (!is_open()) throw std::invalid_argument("the mesh must be opened first");
   }
 
-  bool can_insert(const MeshLocation& at) {
-    if (at.where == MeshLocation::Where::kAtVertex) return false;
-    return at.where != MeshLocation::Where::kOnEdge || !editor().mesh().is_fixed(at.edge);
+  // What there is to be edited.
+  template <typename Do>
+  auto with_editor(Do&& edit) -> decltype(edit(std::declval<MeshEditor&>())) {
+    if (part_ && is_part_worn()) make_whole();
+    return part_ ? edit(*part_) : edit(mesh_->editor());
   }
-  bool is_clear(Vertex slot) {
+
+  // An edit takes some microseconds more than in the mesh of all, which takes as long to make as
+  // about so many of these.
+  bool is_part_worn() const {
+    const std::size_t most = kLeastEdits + static_cast<std::size_t>(given_.count) / kShare;
+    return steps_.size() > most || part_->mesh().store().scans() > kMostScans;
+  }
+  static constexpr std::size_t kLeastEdits = 64, kShare = 128;
+  static constexpr int kMostScans = 4;
+
+  void make_whole() {
+    MeshEditor editor = editor_of(rows_, given_);
+    for (const Step& step : steps_) {
+      if (step.kind == Step::kInsert || step.kind == Step::kLeaveEmpty) editor.add_slot();
+      if (step.kind == Step::kInsert || step.kind == Step::kFill) {
+        editor.insert(step.place, step.slot);
+      } else if (step.kind == Step::kRemove) {
+        editor.remove(step.slot);
+      }
+    }
+    mesh_ = std::make_shared<CheckedMesh>(std::move(editor));
+    steps_ = {};
+    part_.reset();
+  }
+
+  void note(const Step& step) {
+    if (part_) steps_.push_back(step);
+  }
+
+  // The vertex at the point: of a slot behind the others, or the one that is there.
+  Vertex insert_one(Point p) {
+    const Vertex slot{slots()};
+    const Vertex found = with_editor([&](auto& editor) {
+      editor.add_slot();
+      return editor.insert(p, slot);
+    });
+    note({found == slot ? Step::kInsert : Step::kLeaveEmpty, slot, p});
+    return found;
+  }
+
+  template <typename Editor>
+  static bool can_insert(const Editor& editor, const MeshLocation& at) {
+    if (at.where == MeshLocation::Where::kAtVertex) return false;
+    return at.where != MeshLocation::Where::kOnEdge || !editor.mesh().is_fixed(at.edge);
+  }
+  template <typename Editor>
+  bool is_clear(const Editor& editor, Vertex slot) const {
     return !has_lines_ ||
-           (!editor().has_fixed_edge(slot) && editor().clearance(slot) > least_clearance_);
+           (!editor.has_fixed_edge(slot) && editor.clearance(slot) > least_clearance_);
   }
 
   // Whether it was moved.
   bool move_in_plane(Vertex slot, Point p) {
-    if (!is_clear(slot) || !editor().can_remove(slot)) return false;
     const Unfinished unfinished(is_sound_);
-    const Point before = place(slot);
-    editor().remove(slot);
-    const MeshLocation at = editor().locate(p);
-    if (can_insert(at)) {
-      editor().insert_at(at, p, slot);
-      if (is_clear(slot)) return true;
-      editor().remove(slot);
-    }
-    editor().insert(before, slot);
-    return false;
+    const bool is_done = with_editor([&](auto& editor) {
+      if (!is_clear(editor, slot) || !editor.can_remove(slot)) return false;
+      const Point before = editor.point(slot);
+      editor.remove(slot);
+      const MeshLocation at = editor.locate(p);
+      if (can_insert(editor, at)) {
+        editor.insert_at(at, p, slot);
+        if (is_clear(editor, slot)) return true;
+        editor.remove(slot);
+      }
+      editor.insert(before, slot);
+      return false;
+    });
+    if (!is_done) return false;
+    note({Step::kRemove, slot, {}});
+    note({Step::kFill, slot, p});
+    return true;
   }
 
   std::int32_t log(EditRecord::Kind kind, std::int32_t vertex, Vertex slot, GivenVertex given) {
@@ -217,6 +335,10 @@ class EditedMesh {
   }
 
   PointRows rows_;
+  GivenTriangles given_{};
+  // Until the mesh is made: triangles that were touched, and what was done to them.
+  std::unique_ptr<PartialEditor> part_;
+  std::vector<Step> steps_;
   std::shared_ptr<CheckedMesh> mesh_;
   Elevations elevations_;
   VertexNumbers numbers_;

@@ -10,12 +10,15 @@
 //           .            .
 //        from --- edge --- to
 //
-// Topology takes no coordinates here; mesh_editor.hpp decides what to change.
+// Topology takes no coordinates here; mesh_editor.hpp decides what to change. Where the triangles
+// are is the business of a store: in one array (AllTriangles), or in the arrays of a surface but
+// for those that were touched (partial_mesh.hpp).
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 #include <stdexcept>
+#include <utility>
 #include <vector>
 
 #include "../base/arrays.hpp"
@@ -25,14 +28,63 @@
 
 namespace tinsmith {
 
-class Mesh {
+// Every triangle in one array, with one edge that leaves each vertex.
+class AllTriangles {
  public:
+  static constexpr bool kFindsVertices = false;
+
+  std::uint32_t slots() const { return static_cast<std::uint32_t>(triangles_.size()); }
+  const GhostTriangle* data() const { return triangles_.data(); }
+  const GhostTriangle& operator[](Triangle t) const { return triangles_[number(t)]; }
+  GhostTriangle& operator[](Triangle t) { return triangles_[number(t)]; }
+  HalfEdge twin(HalfEdge e) const { return (*this)[triangle_of(e)].twin[corner_of(e)]; }
+  const GhostTriangle& complete(Triangle t) const { return (*this)[t]; }
+  // Of the fixed edges, by corner, both sides of an edge alike; and marks.
+  std::uint8_t bits(Triangle t) const { return bits_[number(t)]; }
+  std::uint8_t& bits(Triangle t) { return bits_[number(t)]; }
+
+  Triangle add() {
+    triangles_.push_back({});
+    bits_.push_back(0);
+    return Triangle{slots() - 1};
+  }
+  void resize(std::uint32_t count) {
+    triangles_.resize(count);
+    bits_.resize(count);
+  }
+  void reserve(std::size_t vertices, std::size_t triangles) {
+    leaving_.reserve(vertices);
+    triangles_.reserve(triangles);
+    bits_.reserve(triangles);
+  }
+
+  HalfEdge leaving(Vertex v) const { return leaving_[number(v)]; }
+  void set_leaving(Vertex v, HalfEdge e) { leaving_[number(v)] = e; }
+  void add_vertices(std::size_t count) { leaving_.resize(leaving_.size() + count, kNoHalfEdge); }
+  void drop_last_vertex() { leaving_.pop_back(); }
+
+ private:
+  ScratchVector<GhostTriangle> triangles_;
+  ScratchVector<std::uint8_t> bits_;
+  ScratchVector<HalfEdge> leaving_;
+};
+
+template <typename Store>
+class BasicMesh {
+ public:
+  static constexpr bool kFindsVertices = Store::kFindsVertices;  // near any point
+
+  BasicMesh() = default;
+  explicit BasicMesh(Store store) : store_(std::move(store)) {}
+
+  const Store& store() const { return store_; }
+
   // ------------------------------------------------------------------ reading
 
   Vertex apex(HalfEdge e) const { return triangle(e).corner[corner_of(e)]; }
   Vertex from(HalfEdge e) const { return triangle(e).corner[corner_after(corner_of(e))]; }
   Vertex to(HalfEdge e) const { return triangle(e).corner[corner_before(corner_of(e))]; }
-  HalfEdge twin(HalfEdge e) const { return triangle(e).twin[corner_of(e)]; }
+  HalfEdge twin(HalfEdge e) const { return store_.twin(e); }
   static HalfEdge after(HalfEdge e) {
     return half_edge(triangle_of(e), corner_after(corner_of(e)));
   }
@@ -43,7 +95,7 @@ class Mesh {
   // Edges that leave a vertex, counter-clockwise about it and back.
   HalfEdge next_leaving(HalfEdge e) const { return twin(before(e)); }
   HalfEdge previous_leaving(HalfEdge e) const { return after(twin(e)); }
-  HalfEdge leaving(Vertex v) const { return leaving_[number(v)]; }
+  HalfEdge leaving(Vertex v) const { return store_.leaving(v); }
   bool is_alive(Vertex v) const { return leaving(v) != kNoHalfEdge; }
 
   // The circulator: for (const HalfEdge e : mesh.around(v)) meets every edge that leaves a vertex
@@ -52,7 +104,7 @@ class Mesh {
    public:
     class Iterator {
      public:
-      Iterator(const Mesh& mesh, HalfEdge first, HalfEdge at)
+      Iterator(const BasicMesh& mesh, HalfEdge first, HalfEdge at)
           : mesh_(mesh), first_(first), at_(at) {}
       HalfEdge operator*() const { return at_; }
       Iterator& operator++() {
@@ -63,16 +115,16 @@ class Mesh {
       bool operator!=(const Iterator& other) const { return at_ != other.at_; }
 
      private:
-      const Mesh& mesh_;
+      const BasicMesh& mesh_;
       HalfEdge first_, at_;
     };
 
-    Around(const Mesh& mesh, HalfEdge first) : mesh_(mesh), first_(first) {}
+    Around(const BasicMesh& mesh, HalfEdge first) : mesh_(mesh), first_(first) {}
     Iterator begin() const { return {mesh_, first_, first_}; }
     Iterator end() const { return {mesh_, first_, kNoHalfEdge}; }
 
    private:
-    const Mesh& mesh_;
+    const BasicMesh& mesh_;
     HalfEdge first_;
   };
   Around around(Vertex v) const { return {*this, leaving(v)}; }
@@ -83,33 +135,30 @@ class Mesh {
     return c[0] == kGhost || c[1] == kGhost || c[2] == kGhost;
   }
   bool is_free(Triangle t) const { return (*this)[t].corner[0] == kFree; }
-  const GhostTriangle& operator[](Triangle t) const { return triangles_[number(t)]; }
+  // Its corners; the twins by twin(), or of a complete one.
+  const GhostTriangle& operator[](Triangle t) const { return store_[t]; }
+  const GhostTriangle& complete(Triangle t) const { return store_.complete(t); }
   // As the order of triangles takes them, by the position in the sweep of each vertex.
   SweptMesh swept(const Vertex* sweep_of) const {
-    return {triangles_.data(), triangle_slots(), sweep_of};
+    return {store_.data(), triangle_slots(), sweep_of};
   }
-  std::uint32_t triangle_slots() const { return static_cast<std::uint32_t>(triangles_.size()); }
+  std::uint32_t triangle_slots() const { return store_.slots(); }
   Ids<Triangle> triangles() const { return Ids<Triangle>(triangle_slots()); }  // free ones too
   std::uint32_t triangle_count() const {
-    return static_cast<std::uint32_t>(triangles_.size() - free_.size());
+    return static_cast<std::uint32_t>(triangle_slots() - free_.size());
   }
 
   // ----------------------------------------------------------------- changing
 
-  void reserve(std::size_t vertices, std::size_t triangles) {
-    leaving_.reserve(vertices);
-    triangles_.reserve(triangles);
-    fixed_.reserve(triangles);
-  }
-  void add_vertices(std::size_t count) { leaving_.resize(leaving_.size() + count, kNoHalfEdge); }
-  void drop_last_vertex() { leaving_.pop_back(); }
+  void reserve(std::size_t vertices, std::size_t triangles) { store_.reserve(vertices, triangles); }
+  void add_vertices(std::size_t count) { store_.add_vertices(count); }
+  void drop_last_vertex() { store_.drop_last_vertex(); }
 
   // The first triangles, all at once: make(t, triangle) fills one in, neighbours and all, and
   // returns the bits of its fixed edges.
   template <typename Make>
   void add_all(std::uint32_t count, const Make& make) {
-    triangles_.resize(count);
-    fixed_.resize(count);
+    store_.resize(count);
     for (const Triangle t : Ids<Triangle>(count)) {
       bits(t) = make(t, at(t));
       keep_leaving(t);
@@ -232,14 +281,14 @@ class Mesh {
     for (int i = 0; i < 2; ++i) {
       for (const HalfEdge f : pair[i]) keep_leaving(triangle_of(f));
     }
-    leaving_[number(v)] = kNoHalfEdge;
+    store_.set_leaving(v, kNoHalfEdge);
   }
 
   // A vertex is in no triangle any more, and two triangles go with it.
   void drop(Vertex v, Triangle t, Triangle s) {
     free(t);
     free(s);
-    leaving_[number(v)] = kNoHalfEdge;
+    store_.set_leaving(v, kNoHalfEdge);
   }
 
  private:
@@ -253,9 +302,9 @@ class Mesh {
 
   const GhostTriangle& triangle(HalfEdge e) const { return (*this)[triangle_of(e)]; }
 
-  GhostTriangle& at(Triangle t) { return triangles_[number(t)]; }
-  std::uint8_t& bits(Triangle t) { return fixed_[number(t)]; }
-  std::uint8_t bits(Triangle t) const { return fixed_[number(t)]; }
+  GhostTriangle& at(Triangle t) { return store_[t]; }
+  std::uint8_t& bits(Triangle t) { return store_.bits(t); }
+  std::uint8_t bits(Triangle t) const { return store_.bits(t); }
 
   Triangle allocate() {
     if (!free_.empty()) {
@@ -263,9 +312,7 @@ class Mesh {
       free_.pop_back();
       return t;
     }
-    triangles_.push_back({});
-    fixed_.push_back(0);
-    return Triangle{triangle_slots() - 1};
+    return store_.add();
   }
 
   void free(Triangle t) {
@@ -285,7 +332,7 @@ class Mesh {
   void keep_leaving(Triangle t) {
     for (std::uint32_t k = 0; k < 3; ++k) {
       const Vertex v = at(t).corner[k];
-      if (v != kGhost) leaving_[number(v)] = half_edge(t, corner_before(k));
+      if (v != kGhost) store_.set_leaving(v, half_edge(t, corner_before(k)));
     }
   }
 
@@ -299,10 +346,10 @@ class Mesh {
                                         opposite_c.is_fixed << 2);
   }
 
-  ScratchVector<GhostTriangle> triangles_;
-  ScratchVector<std::uint8_t> fixed_;  // bits by corner, both sides of an edge alike; mark
-  std::vector<Triangle> free_;         // triangles to use again
-  ScratchVector<HalfEdge> leaving_;    // one edge that leaves each vertex
+  Store store_;
+  std::vector<Triangle> free_;  // triangles to use again
 };
+
+using Mesh = BasicMesh<AllTriangles>;
 
 }  // namespace tinsmith

@@ -13,19 +13,10 @@
 #include "../growth/triangle_store.hpp"
 #include "../index/grid.hpp"
 #include "../insertion/canonical_order.hpp"
+#include "given_triangles.hpp"
 #include "mesh_editor.hpp"
 
 namespace tinsmith {
-
-// Triangles of the whole convex hull, or of a surface with any boundary, three entries each:
-// corners, neighbours (kNoNeighbor outside) and whether the edge opposite the corner is fixed
-// (null: none is).
-struct GivenTriangles {
-  const std::int32_t* corners;
-  const std::int32_t* neighbors;
-  const bool* fixed;
-  std::int32_t count;
-};
 
 namespace detail {
 
@@ -48,14 +39,9 @@ class TriangleCopy {
 
  private:
   HalfEdge twin(Triangle t, std::uint32_t k, std::int32_t neighbor) const {
-    if (neighbor == kNoNeighbor) {
-      hull_.push_back(half_edge(t, k));
-      return kNoHalfEdge;
-    }
-    const Triangle across = triangle_numbered(neighbor);
-    const std::int32_t own = index_of(t);
-    const std::int32_t* const back = given_.neighbors + entry_of(across, 0);
-    return half_edge(across, (back[1] == own) + 2u * (back[2] == own));
+    if (neighbor != kNoNeighbor) return given_.twin(t, triangle_numbered(neighbor));
+    hull_.push_back(half_edge(t, k));
+    return kNoHalfEdge;
   }
 
   const GivenTriangles& given_;

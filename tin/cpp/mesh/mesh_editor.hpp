@@ -29,21 +29,24 @@
 
 namespace tinsmith {
 
-class MeshEditor {
+template <typename Mesh, typename Points>
+class BasicMeshEditor {
  public:
   enum class Forced { kDone, kBlocked };
 
-  // A mesh with its points, ready to be changed.
-  MeshEditor(Mesh mesh, MeshPoints points) : mesh_(std::move(mesh)), points_(std::move(points)) {
+  // A mesh with its points, ready to be changed; all have a vertex, or so many.
+  BasicMeshEditor(Mesh mesh, Points points) : mesh_(std::move(mesh)), points_(std::move(points)) {
     for (const Vertex v : vertices()) count_ += mesh_.is_alive(v);
   }
+  BasicMeshEditor(Mesh mesh, Points points, std::int32_t count)
+      : mesh_(std::move(mesh)), points_(std::move(points)), count_(count) {}
 
   const Mesh& mesh() const { return mesh_; }
   std::int32_t slots() const { return points_.slots(); }
   Ids<Vertex> vertices() const { return Ids<Vertex>(slots()); }  // those that are gone, too
   std::int32_t count() const { return count_; }                  // of vertices
   Point point(Vertex v) const { return points_[v]; }
-  const MeshPoints& points() const { return points_; }
+  const Points& points() const { return points_; }
 
   // Make every edge Delaunay that is not fixed, of a mesh that was not so.
   void legalize_all() {
@@ -66,12 +69,13 @@ class MeshEditor {
 
   // Where p lies; the walk there begins at an edge that may be near.
   MeshLocation locate(Point p, HalfEdge near) {
-    return PointSearch(mesh_, points_, count_, state_).locate(p, near, kGhost);
+    return PointSearch(mesh_, points_, count_, state_).locate(p, near, [] { return kGhost; });
   }
 
   // The same from the last change or from a landmark.
   MeshLocation locate(Point p) {
-    return PointSearch(mesh_, points_, count_, state_).locate(p, last_, landmark_near(p));
+    const auto find_landmark = [this, p] { return landmark_near(p); };
+    return PointSearch(mesh_, points_, count_, state_).locate(p, last_, find_landmark);
   }
 
   // The vertex at p, which is `slot` if there was none; a fixed edge through p is split.
@@ -82,7 +86,7 @@ class MeshEditor {
   Vertex insert_at(MeshLocation at, Point p, Vertex slot) {
     using Where = MeshLocation::Where;
     if (at.where == Where::kAtVertex) return mesh_.from(at.edge);
-    points_[slot] = p;
+    points_.put(slot, p);
     ++count_;
     if (at.where == Where::kOnEdge) {
       fixed_splits_ += mesh_.is_fixed(at.edge);
@@ -275,11 +279,15 @@ class MeshEditor {
     return dx * dx + dy * dy;
   }
 
-  // Worth setting up in a large mesh only.
+  // A vertex that may be near. Landmarks are worth setting up in a large mesh only.
   Vertex landmark_near(Point p) {
-    if (slots() < Landmarks::kLeast) return kGhost;
-    if (!landmarks_.are_set()) landmarks_.set(mesh_, points_);
-    return landmarks_.near(p);
+    if constexpr (Mesh::kFindsVertices) {
+      return mesh_.store().vertex_near(p);
+    } else {
+      if (slots() < Landmarks::kLeast) return kGhost;
+      if (!landmarks_.are_set()) landmarks_.set(mesh_, points_);
+      return landmarks_.near(p);
+    }
   }
 
   int turn(Vertex a, Vertex b, Vertex c) const {
@@ -477,7 +485,7 @@ class MeshEditor {
   int side_of(Vertex a, Vertex b, Vertex v) const { return v == kGhost ? 0 : turn(a, b, v); }
 
   Mesh mesh_;
-  MeshPoints points_;
+  Points points_;
   std::int32_t count_ = 0;
   std::int64_t fixed_splits_ = 0;
   HalfEdge last_ = kNoHalfEdge;  // near the last change
@@ -490,5 +498,7 @@ class MeshEditor {
   bool is_watched_ = false;
   std::vector<Triangle> touched_;
 };
+
+using MeshEditor = BasicMeshEditor<Mesh, MeshPoints>;
 
 }  // namespace tinsmith

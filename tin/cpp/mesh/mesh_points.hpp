@@ -14,8 +14,8 @@ namespace tinsmith {
 // anything.
 class MeshPoints {
  public:
-  Point& operator[](Vertex v) { return points_[static_cast<std::size_t>(number(v))]; }
   const Point& operator[](Vertex v) const { return points_[static_cast<std::size_t>(number(v))]; }
+  void put(Vertex v, Point p) { points_[static_cast<std::size_t>(number(v))] = p; }
   const Point* begin() const { return points_.data(); }
   std::int32_t slots() const { return static_cast<std::int32_t>(points_.size()); }
 

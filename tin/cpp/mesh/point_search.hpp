@@ -25,8 +25,8 @@ struct MeshLocation {
 };
 
 // Of a point that a triangle holds, perhaps on its boundary.
-template <typename PointAt>
-MeshLocation location_in(const Mesh& mesh, PointAt&& point_at, Triangle t, Point p) {
+template <typename AnyMesh, typename PointAt>
+MeshLocation location_in(const AnyMesh& mesh, PointAt&& point_at, Triangle t, Point p) {
   for (const HalfEdge e : half_edges(t)) {
     if (point_at(mesh.apex(e)) == p) return {MeshLocation::Where::kAtVertex, Mesh::before(e)};
   }
@@ -39,16 +39,19 @@ MeshLocation location_in(const Mesh& mesh, PointAt&& point_at, Triangle t, Point
 }
 
 // One walk: exact, and no longer than a few times what the distance asks for.
+template <typename AnyMesh, typename Points>
 class PointSearch {
  public:
   // `state` of the random choices, which never show in the result.
-  PointSearch(const Mesh& mesh, const MeshPoints& points, std::int32_t vertex_count,
+  PointSearch(const AnyMesh& mesh, const Points& points, std::int32_t vertex_count,
               std::uint64_t& state)
       : mesh_(mesh), points_(points), count_(vertex_count), state_(state) {}
 
-  // `last` is an edge that may be near, or kNoHalfEdge; `landmark` a vertex that may be, or kGhost.
-  MeshLocation locate(Point p, HalfEdge last, Vertex landmark) {
-    HalfEdge e = nearest_start(p, last, landmark);
+  // `last` is an edge that may be near, or kNoHalfEdge; if it is not, find_landmark() is a vertex
+  // that may be, or kGhost.
+  template <typename FindLandmark>
+  MeshLocation locate(Point p, HalfEdge last, FindLandmark&& find_landmark) {
+    HalfEdge e = nearest_start(p, last, find_landmark);
     if (mesh_.is_ghost(triangle_of(e))) e = real_side(triangle_of(e));
     const Triangle start = triangle_of(e);
     bool is_outside = false;
@@ -66,11 +69,13 @@ class PointSearch {
  private:
   // The walk begins at the last change, at the landmark, or at the nearest of a few vertices drawn
   // at random: as many as make the walk from there as short as the drawing.
-  HalfEdge nearest_start(Point p, HalfEdge last, Vertex landmark) {
+  template <typename FindLandmark>
+  HalfEdge nearest_start(Point p, HalfEdge last, FindLandmark&& find_landmark) {
     HalfEdge best = last;
     if (best == kNoHalfEdge || mesh_.is_free(triangle_of(best))) best = first_edge();
     double nearest = distance_to(p, best);
     if (nearest <= kShortWalk * square_of(best)) return best;
+    const Vertex landmark = find_landmark();
     if (landmark != kGhost && mesh_.is_alive(landmark)) {
       const HalfEdge there = mesh_.leaving(landmark);
       return distance_to(p, there) < nearest ? there : best;
@@ -128,7 +133,9 @@ class PointSearch {
   }
 
   MeshLocation locate_straight(Point p, Triangle start) const {
-    const auto triangle_at = [this](Triangle t) -> const GhostTriangle& { return mesh_[t]; };
+    const auto triangle_at = [this](Triangle t) -> const GhostTriangle& {
+      return mesh_.complete(t);
+    };
     const auto point_at = [this](Vertex v) { return points_[v]; };
     const Triangle t = StraightWalk(triangle_at, point_at, mesh_.triangle_slots()).find(p, start);
     for (const HalfEdge e : half_edges(t)) {
@@ -165,8 +172,8 @@ class PointSearch {
     return state_ >> 33;
   }
 
-  const Mesh& mesh_;
-  const MeshPoints& points_;
+  const AnyMesh& mesh_;
+  const Points& points_;
   std::int32_t count_;
   std::uint64_t& state_;
 };

@@ -19,12 +19,14 @@ namespace tinsmith {
 class StarFilling {
  public:
   // Whether v is within the surface, has few neighbours, and enough ears have empty circles.
-  bool find(const Mesh& mesh, const MeshPoints& points, Vertex v) {
+  template <typename AnyMesh, typename Points>
+  bool find(const AnyMesh& mesh, const Points& points, Vertex v) {
     return gather(mesh, points, v) && cut_ears();
   }
 
   // Fill the star that was found; returns the last triangle that was made.
-  Triangle fill(Mesh& mesh, Vertex v) {
+  template <typename AnyMesh>
+  Triangle fill(AnyMesh& mesh, Vertex v) {
     for (int i = 0; i < size_ - 3; ++i) {
       const int tip = ears_[i];
       const int before = before_[tip], after = after_[tip];
@@ -43,7 +45,8 @@ class StarFilling {
  private:
   static constexpr int kMost = 16;
 
-  bool gather(const Mesh& mesh, const MeshPoints& points, Vertex v) {
+  template <typename AnyMesh, typename Points>
+  bool gather(const AnyMesh& mesh, const Points& points, Vertex v) {
     size_ = 0;
     for (const HalfEdge e : mesh.around(v)) {
       const Vertex corner = mesh.to(e);
@@ -88,7 +91,8 @@ class StarFilling {
   }
 
   // The edge opposite the tip is not joined.
-  void make(Mesh& mesh, Triangle t, int before, int tip, int after) {
+  template <typename AnyMesh>
+  void make(AnyMesh& mesh, Triangle t, int before, int tip, int after) {
     mesh.reuse(t, corner_[before], corner_[tip], corner_[after]);
     mesh.join(half_edge(t, 2), beyond_[before]);
     mesh.join(half_edge(t, 0), beyond_[tip]);
@@ -96,7 +100,8 @@ class StarFilling {
     keep_fixed(mesh, half_edge(t, 0));
   }
 
-  static void keep_fixed(Mesh& mesh, HalfEdge e) {
+  template <typename AnyMesh>
+  static void keep_fixed(AnyMesh& mesh, HalfEdge e) {
     if (mesh.is_fixed(mesh.twin(e))) mesh.fix(e, true);
   }
 

@@ -76,13 +76,16 @@ class HeldSlots {
 
   void set_up() {
     has_gaps_ = true;
-    for (std::int32_t slot = 0; slot < slots_; slot += kBits) add_block();
-    for (std::int32_t slot = 0; slot < slots_; ++slot) {
-      bits_[block_of(slot)] |= std::uint64_t{1} << (slot % kBits);
+    const auto blocks = static_cast<std::size_t>((slots_ + kBits - 1) / kBits);
+    bits_.assign(blocks, ~std::uint64_t{0});
+    if (slots_ % kBits != 0) bits_.back() = (std::uint64_t{1} << (slots_ % kBits)) - 1;
+    sums_.resize(blocks);
+    for (std::size_t position = 1; position <= blocks; ++position) {
+      const auto low = static_cast<std::int32_t>(position & -position);  // blocks in the sum
+      sums_[position - 1] = kBits * low;
     }
-    for (std::size_t block = 0; block < bits_.size(); ++block) {
-      add_to_sums(block, count_bits(bits_[block]));
-    }
+    if (slots_ % kBits != 0) sums_.back() -= kBits - slots_ % kBits;  // no other has the last block
+    while (2 * largest_step_ <= blocks) largest_step_ *= 2;
   }
 
   // An empty one behind the others.

@@ -74,12 +74,18 @@ class HeldEdits {
   }
 
   void open(const GivenTriples& triangles, const GivenTriples& neighbors, const GivenFlags& fixed) {
-    if (edited_.mesh() != nullptr) throw std::invalid_argument("the mesh is open already");
-    edited_.open(CheckedMesh(editor_from(GivenRows(points_), triangles, neighbors, fixed)));
+    if (edited_.is_open()) throw std::invalid_argument("the mesh is open already");
+    const GivenTriangles given = triangles_of(triangles, neighbors, fixed);
+    arrays_ = {triangles, neighbors, fixed};
+    edited_.open(given);
   }
-  HeldMesh mesh() const {
-    if (edited_.mesh() == nullptr) throw std::invalid_argument("the mesh must be opened first");
-    return HeldMesh(edited_.mesh());
+  HeldMesh mesh() {
+    const auto made = [this] {
+      ReleasedLock release;
+      return edited_.mesh();
+    }();
+    let_arrays_go();
+    return HeldMesh(made);
   }
   void leave_empty(const GivenNumbers& slots) {
     for (const Vertex slot : checked(slots)) edited_.leave_empty(slot);
@@ -116,6 +122,7 @@ class HeldEdits {
   std::size_t logged() const { return edited_.logged(); }
 
   auto take_log() {
+    let_arrays_go();
     const std::vector<EditRecord> log = edited_.take_log();
     const std::size_t size = log.size();
     auto numbers = streamed_array<std::int32_t>(3 * size);
@@ -144,12 +151,15 @@ class HeldEdits {
       ReleasedLock release;
       edited_.insert_all(rows.data(), count, result.get());
     }
+    let_arrays_go();
     return hand_over<Numbers>(std::move(result), {rows.shape(0)});
   }
   bool empty(std::int32_t slot) { return edited_.empty(Vertex{slot}); }
   std::int32_t fill(std::int32_t slot, double x, double y) {
     return number(edited_.fill(Vertex{slot}, {x, y}));
   }
+  bool is_clear(std::int32_t slot) { return edited_.is_clear(Vertex{slot}); }
+  bool has_fixed_edge(std::int32_t slot) { return edited_.has_fixed_edge(Vertex{slot}); }
   void put_elevation(std::int32_t slot, double z) { edited_.put_elevation(Vertex{slot}, z); }
 
   std::tuple<double, double, double> point(std::int32_t slot) const {
@@ -199,6 +209,11 @@ class HeldEdits {
   }
 
  private:
+  // Once there is a mesh of its own.
+  void let_arrays_go() {
+    if (edited_.is_whole()) arrays_ = {};
+  }
+
   std::vector<Vertex> checked(const GivenNumbers& slots) const {
     std::vector<Vertex> found(slots.shape(0));
     for (std::size_t i = 0; i < found.size(); ++i) {
@@ -207,7 +222,13 @@ class HeldEdits {
     return found;
   }
 
+  struct Arrays {
+    GivenTriples triangles, neighbors;
+    GivenFlags fixed;
+  };
+
   GivenXyz points_;  // of the first slots
+  Arrays arrays_;    // of the triangles before the edits
   EditedMesh edited_;
 };
 
@@ -216,10 +237,10 @@ inline void bind_editing(nb::module_& m) {
       .def(nb::init<GivenXyz, std::int32_t, std::int32_t>(), "points"_a.noconvert(), "first_line"_a,
            "end_of_lines"_a)
       .def("open", &HeldEdits::open, "triangles"_a.noconvert(), "neighbors"_a.noconvert(),
-           "fixed"_a.noconvert(), "Make the mesh.")
-      .def_prop_ro("mesh", &HeldEdits::mesh, "The mesh, whose vertices stay.")
+           "fixed"_a.noconvert(), "From now on there are triangles.")
+      .def_prop_ro("mesh", &HeldEdits::mesh, "A mesh of all triangles, whose vertices stay.")
       .def("leave_empty", &HeldEdits::leave_empty, "slots"_a.noconvert(),
-           "Slots without a vertex, before the mesh is made.")
+           "Slots without a vertex, before there are triangles.")
       .def("keep_clear", &HeldEdits::keep_clear, "distance"_a,
            "There are lines: what comes as near as this to an edge around it may reach one.")
       .def("lend", &HeldEdits::lend, "From now on edits of one vertex are done, and logged.")
@@ -243,6 +264,9 @@ inline void bind_editing(nb::module_& m) {
            "Remove a vertex; False if it must stay, for no triangle would be left.")
       .def("fill", &HeldEdits::fill, "slot"_a, "x"_a, "y"_a,
            "Put a removed vertex at a place; returns the slot of the vertex there.")
+      .def("is_clear", &HeldEdits::is_clear, "slot"_a,
+           "Whether a vertex is as far from lines as it must be.")
+      .def("has_fixed_edge", &HeldEdits::has_fixed_edge, "slot"_a)
       .def("put_elevation", &HeldEdits::put_elevation, "slot"_a, "z"_a)
       .def("point", &HeldEdits::point, "slot"_a, "Easting, northing and elevation.")
       .def("slots_of", &HeldEdits::slots_of, "vertices"_a.noconvert(), "Their slots.")

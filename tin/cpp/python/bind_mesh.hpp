@@ -22,18 +22,23 @@
 
 namespace tinsmith::python {
 
-inline MeshEditor editor_from(const GivenRows& points, const GivenTriples& triangles,
-                              const GivenTriples& neighbors,
-                              const std::optional<GivenFlags>& fixed) {
+inline GivenTriangles triangles_of(const GivenTriples& triangles, const GivenTriples& neighbors,
+                                   const std::optional<GivenFlags>& fixed) {
   if (neighbors.shape(0) != triangles.shape(0) ||
       (fixed && fixed->shape(0) != triangles.shape(0))) {
     throw std::invalid_argument("triangles, neighbors and fixed must have as many rows");
   }
+  return {triangles.data(), neighbors.data(), fixed ? fixed->data() : nullptr,
+          static_cast<std::int32_t>(triangles.shape(0))};
+}
+
+inline MeshEditor editor_from(const GivenRows& points, const GivenTriples& triangles,
+                              const GivenTriples& neighbors,
+                              const std::optional<GivenFlags>& fixed) {
+  const GivenTriangles given = triangles_of(triangles, neighbors, fixed);
   if (points.shape(1) < 2) throw std::invalid_argument("points must have two columns at least");
   const PointRows rows{points.data(), static_cast<std::int64_t>(points.shape(0)),
                        static_cast<std::int64_t>(points.shape(1))};
-  const GivenTriangles given{triangles.data(), neighbors.data(), fixed ? fixed->data() : nullptr,
-                             static_cast<std::int32_t>(triangles.shape(0))};
   ReleasedLock release;
   return editor_of(rows, given);
 }
