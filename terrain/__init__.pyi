@@ -22,6 +22,7 @@ from .charts.triangles import to_matplotlib as to_matplotlib
 from .corridors import section_volumes as section_volumes
 from .drawing.models import lift as lift
 from .earthwork import Difference as Difference
+from .earthwork import ErrorModel as ErrorModel
 from .earthwork import difference as difference
 from .earthwork import stage_storage as stage_storage
 from .earthwork import volume as volume

@@ -1,6 +1,7 @@
 """Volumes and differences of surfaces, in closed form."""
 
 from .differences import Difference, difference
+from .error_models import ErrorModel
 from .planes import as_plane, level_surface
 from .regions import as_regions
 from .storage import stage_storage
@@ -8,6 +9,7 @@ from .volumes import volume
 
 __all__ = [
     "Difference",
+    "ErrorModel",
     "as_plane",
     "as_regions",
     "difference",

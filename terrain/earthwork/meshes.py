@@ -220,20 +220,33 @@ def cut_at_zero(points: Float64Array, triangles: Int32Array) -> tuple[Float64Arr
     -____/  -                     \__ \
                                           `--
     """
+    return divide_at_zero(points, triangles)[:2]
+
+
+def divide_at_zero(
+    points: Float64Array, triangles: Int32Array
+) -> tuple[Float64Array, Int32Array, Int64Array]:
+    """Cut triangles as :func:`cut_at_zero`, and return also the one that each is a part of.
+
+    Points, (n, 3 or more), may have further columns, which are linear along the edges.
+    """
+    whole = np.arange(len(triangles))
     signs = np.sign(points[triangles, 2]).astype(np.int8)
     is_cut = (signs.max(axis=1) > 0) & (signs.min(axis=1) < 0)
     if not is_cut.any():
-        return points, triangles
+        return points, triangles, whole
     corners, signs = _turn_alone_first(triangles[is_cut], signs[is_cut])
     points, second, third = _place_zeros(points, corners, signs)
     a, b, c = corners.T
-    whole = signs[:, 1] == 0  # the line runs from corner b: then only a-c is cut
+    is_apart = signs[:, 1] != 0  # else the line runs from corner b: then only a-c is cut
     parts = [
         np.stack([a, second, third], axis=1),
-        np.stack([second, b, third], axis=1)[~whole],
+        np.stack([second, b, third], axis=1)[is_apart],
         np.stack([b, c, third], axis=1),
     ]
-    return points, np.concatenate([triangles[~is_cut], *parts]).astype(np.int32)
+    cut = whole[is_cut]
+    parents = np.concatenate([whole[~is_cut], cut, cut[is_apart], cut])
+    return points, np.concatenate([triangles[~is_cut], *parts]).astype(np.int32), parents
 
 
 def _turn_alone_first(corners: Int32Array, signs: Int8Array) -> tuple[Int32Array, Int8Array]:
@@ -263,9 +276,8 @@ def _interpolate_zeros(points: Float64Array, one: Int64Array, other: Int64Array)
     is_lower = points[one, 2] < points[other, 2]
     low, high = (points[np.where(is_lower, *pair)] for pair in ((one, other), (other, one)))
     share = (low[:, 2] / (low[:, 2] - high[:, 2]))[:, None]
-    xy = np.where(
-        share <= 0.5,
-        low[:, :2] + share * (high[:, :2] - low[:, :2]),
-        high[:, :2] + (1.0 - share) * (low[:, :2] - high[:, :2]),
+    made: Float64Array = np.where(
+        share <= 0.5, low + share * (high - low), high + (1.0 - share) * (low - high)
     )
-    return np.column_stack([xy, np.zeros(len(xy))])
+    made[:, 2] = 0.0
+    return made

@@ -23,6 +23,7 @@ from ..surface import (
 )
 from .planes import as_plane
 from .regions import as_regions
+from .uncertainty import add_errors, ask, find_detection
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -33,6 +34,8 @@ if TYPE_CHECKING:
     from ...base.progress import Tell
     from ...tin import TIN
     from ..surface import Reference
+    from .error_models import ErrorModel
+    from .planes import Plane
 
 _ROUNDING = 1e-12
 """An area alone that is a smaller share of the whole is what the sums' rounding leaves."""
@@ -53,6 +56,7 @@ class Measured(NamedTuple):
     """The regions, if there are any."""
     other: Surface | None
     """In the units of the first; None if there is a plane."""
+    plane: Plane | None = None
 
 
 @product
@@ -62,6 +66,10 @@ def volume(
     *,
     base: float | ArrayLike | None = None,
     regions: Any = None,
+    standard_error: float | str | ErrorModel | None = None,
+    other_standard_error: float | str | ErrorModel | None = None,
+    level_of_detection: float | None = None,
+    confidence: float | None = None,
     threads: int | None = None,
     progress: Callable[[float], None] | None = None,
 ) -> Table:
@@ -83,6 +91,20 @@ def volume(
         Measure region by region: a mapping of names to polygons, :class:`Features`, a
         GeoDataFrame, or a sequence of polygons (of shapely, or rings). Of a polygon of several
         rings inside is what an odd number of them holds.
+    standard_error : float, str or ErrorModel, optional
+        Standard error of the elevations of ``tin``, in their unit: a number, the column of its
+        vertices that has them, or an :class:`ErrorModel` of errors that are correlated or
+        systematic. Errors of the two surfaces are independent. Default exact, if errors of the
+        other one are given, which is noted.
+    other_standard_error : float, str or ErrorModel, optional
+        The same of ``other``.
+    level_of_detection : float, optional
+        Difference, in the unit of elevations, up to which a surface counts as unchanged: volumes
+        beyond it are told beside the whole. Default none.
+    confidence : float, optional
+        In place of ``level_of_detection``: it is computed from the standard errors of both
+        surfaces, such that one of so many differences is real, as 0.95. Where they vary, so does
+        it.
     threads : int, optional
         Default every core, where it pays. The result is the same.
     progress : callable, optional
@@ -97,12 +119,18 @@ def volume(
         ``unchanged_area``; ``surface_area`` and ``base_surface_area`` in space over the same;
         ``area_alone`` and ``base_area_alone``, where only ``tin`` or only the other one is;
         ``lowest``, ``highest`` and ``mean`` of the other less ``tin``. Volumes in the CRS's unit
-        cubed; units that are not known are written so.
+        cubed; units that are not known are written so. With standard errors ``cut_error``,
+        ``fill_error`` and ``net_error`` behind ``net``, the standard errors of these volumes. With
+        a level of detection ``level_of_detection``, its mean if it varies, and of what differs by
+        more ``thresholded_cut``, ``thresholded_fill``, ``thresholded_net``,
+        ``thresholded_cut_area`` and ``thresholded_fill_area``.
 
     Raises
     ------
     OptionError
-        If there is neither another TIN nor a base, or both; if the base is none.
+        If there is neither another TIN nor a base, or both; if the base is none. If a standard
+        error is negative, or a column of the vertices is missing or has no value for one; if a
+        level of detection is not above 0, or given with a confidence.
     CrsError
         If coordinates are degrees, the CRSs differ, or only one is known; if units of elevations
         cannot be told to be the same. Units that are known and differ are converted.
@@ -117,6 +145,19 @@ def volume(
     the TINs exchanged ``cut`` and ``fill`` change places. What remains are the roundings of single
     cells, some 1e-14 of each. Two TINs of a million points take some 5 s on one core.
 
+    A net volume is linear in the elevations, cut and fill are as long as no cell changes from one
+    to the other: standard errors are those of the linear function. That of cut is too small where
+    there is hardly any cut but noise. The level of detection is z sqrt(s1² + s2²) of the standard
+    errors of both surfaces with the quantile z of the normal distribution, 1.96 for 0.95 (Lane et
+    al. 2003, Wheaton et al. 2010); thresholded volumes are whole where the difference exceeds it.
+
+    References
+    ----------
+    S. N. Lane, R. M. Westaway, D. M. Hicks: Estimation of erosion and deposition volumes in a
+    large, gravel-bed, braided river using synoptic remote sensing. Earth Surface Processes and
+    Landforms 28 (2003), doi:10.1002/esp.483. J. M. Wheaton et al.: Accounting for uncertainty in
+    DEMs from repeat topographic surveys. The same 35 (2010), doi:10.1002/esp.1886.
+
     Examples
     --------
     >>> import tinsmith as ts
@@ -124,9 +165,19 @@ def volume(
     >>> table = ts.volume(ground, base=6.5)
     >>> table["cut"], table["fill"], table["area"]
     (array([4.5]), array([4.5]), array([12.]))
+    >>> ts.volume(ground, base=6.5, standard_error=0.05)["net_error"].round(3)
+    array([0.316])
     """
     done = Progress(progress)
-    table = measure(tin, other, base, regions, threads, done).table
+    asked = ask(
+        standard_error, other_standard_error, level_of_detection, confidence, is_plane=other is None
+    )
+    share = 0.5 if asked.has_errors or asked.has_level else 1.0
+    measuring = Progress(done.stage(0.0, share))
+    measured = measure(tin, other, base, regions, threads, measuring)
+    detection = find_detection(measured, asked, (tin, other))
+    adding = Progress(done.stage(share, 1.0))
+    table = add_errors(measured, asked, (tin, other), detection, adding)
     done.end()
     return table
 
@@ -195,7 +246,7 @@ def _measure_to_plane(tin: TIN, base: Any, regions: Any, purpose: str) -> Measur
         alone["base_area_alone"] = subtract(_measure_areas(parts, len(names)), sums[:, 0])
     notes = (*notes, *describe_overlaps(parts, names))
     table = as_table(names, sums, alone, reference, notes)
-    return Measured(table, reference, names, sums, surface, pieces, parts, None)
+    return Measured(table, reference, names, sums, surface, pieces, parts, None, plane)
 
 
 def _take_whole(surface: Surface) -> Pieces:

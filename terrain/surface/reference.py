@@ -111,6 +111,8 @@ class Pieces:
     surface: Surface
     groups: Int32Array
     """(m,)."""
+    sources: Int64Array | None = None
+    """(m,), the triangles that they are pieces of; None if each is whole."""
 
 
 def fan_out(offsets: Int64Array, corners: Int32Array) -> tuple[Int32Array, Int64Array]:
@@ -147,5 +149,6 @@ def cut_pieces(surface: Surface, regions: Pieces) -> Pieces:
     triangles, cells = fan_out(made.offsets, made.corners)
     # Rounding turns over what is thinner than coordinates can tell, which has no area to speak of.
     sound = turns(points, triangles) > 0
-    groups = regions.groups[made.triangles[cells[sound], 1]]
-    return Pieces(Surface(points, np.ascontiguousarray(triangles[sound])), groups)
+    sources, within = made.triangles[cells[sound]].T
+    surface_of = Surface(points, np.ascontiguousarray(triangles[sound]))
+    return Pieces(surface_of, regions.groups[within], sources.astype(np.int64))

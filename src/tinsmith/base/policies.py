@@ -16,6 +16,9 @@ CrossingPolicy: TypeAlias = Literal["split", "error"]
 TrimPolicy: TypeAlias = Literal["perimeter", "everywhere"]
 """Where triangles with too long an edge are dropped: from the outside inwards, or everywhere."""
 
+CorrelationModel: TypeAlias = Literal["exponential", "spherical", "gaussian"]
+"""How the correlation of errors falls with the distance."""
+
 GroundReturns: TypeAlias = Literal["last", "all"]
 """Which returns of a pulse may be ground."""
 
