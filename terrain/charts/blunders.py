@@ -85,7 +85,7 @@ def blunder_map(tin: TIN, table: Table, *, title: str | None = None) -> Any:
         purpose=_PURPOSE,
         pad=0.03,
         beside=_LEGEND,
-        has_caption=True,
+        caption_lines=1,
     )
     draw_shade(drawn.axes, shade_for_map(ground, smooth=False), limits=_LIGHTS)
     if len(ground.points) <= _MOST_DOTS:

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from ...base import optional
 from ...base.checks import require_tin, require_type
-from ...tin import Bounds
+from ...tin import TIN, Bounds
 from ..drawing import draw_north_up, palette, parse_title, round_down
 from ..earthwork import Difference
 from ..gridding import rasterize
@@ -19,8 +20,8 @@ from .maps import PIXELS, draw_cells, draw_scale, draw_shade, start_map
 
 if TYPE_CHECKING:
     from ...base.arrays import Float64Array
-    from ...base.results import Features
-    from ...tin import TIN, Grid
+    from ...base.results import Features, Table
+    from ...tin import Grid
     from .maps import Map
 
 _PURPOSE = "A cut and fill map"
@@ -30,6 +31,7 @@ _LIGHTS = (-330, 245)
 """What is black and what is white: the ground is paler than what matters."""
 _SCALE = 0.95
 """Inches beside the map."""
+_KINDS = ("cut", "fill", "net")
 _LINES = 8
 """So many lines of equal cut or fill are drawn at most on each side."""
 
@@ -53,7 +55,8 @@ def earthwork_map(
     -------
     matplotlib.figure.Figure
         Drawn without a screen; ``savefig`` writes it. Cut is red, fill blue, with lines of equal
-        difference; the black line parts them. Above it stand the sums of ``difference.volumes``.
+        difference; the black line parts them. What differs by no more than a level of detection has
+        no colour. Above it stand the sums of ``difference.volumes``, with their standard errors.
 
     Raises
     ------
@@ -83,29 +86,57 @@ def earthwork_map(
         purpose=_PURPOSE,
         pad=_PAD,
         beside=_SCALE,
-        has_caption=True,
+        caption_lines=1 + _has_level(difference),
     )
     axes = drawn.axes
     if ground is not None:
         shade = hillshade(ground, grid=_choose_grid(ground, axes), smooth=True)
         draw_shade(axes, shade, limits=_LIGHTS)
-    _draw_difference(drawn, surface)
+    _draw_difference(drawn, surface, difference)
     _draw_zero_line(axes, surface, draw_north_up(difference.zero_line))
     drawn.write_caption(_write_caption(difference), size=10)
     return drawn.figure
 
 
 def _write_caption(difference: Difference) -> str:
-    """Write the sums of the table of volumes."""
-    table = difference.volumes
-    volume, area = (f" {unit}" if unit else "" for unit in map(table.units.get, ("cut", "area")))
+    """Write the sums of the table of volumes, and those beyond the level of detection."""
+    lines = [_write_sums(difference.volumes)]
+    if _has_level(difference):
+        lines.append(_write_beyond(difference.volumes))
+    return "\n".join(lines)
+
+
+def _has_level(difference: Difference) -> bool:
+    return "level_of_detection" in difference.volumes.columns
+
+
+def _write_sums(table: Table) -> str:
+    unit = table.units.get("area")
     parts = [
-        f"{kind} {_write_rounded(float(table[kind].sum()))}{volume} over "
-        f"{_write_rounded(float(table[f'{kind}_area'].sum()))}{area}"
+        f"{kind} {_write_volume(table, kind)} over "
+        f"{_write_rounded(float(table[f'{kind}_area'].sum()))}{f' {unit}' if unit else ''}"
         for kind in ("cut", "fill")
     ]
-    surplus = f"net {_write_rounded(float(table['net'].sum()))}{volume}"
-    return f"{'; '.join(parts).capitalize()}; {surplus}"
+    parts.append(f"net {_write_volume(table, 'net')}")
+    return "; ".join(parts).capitalize()
+
+
+def _write_volume(table: Table, name: str) -> str:
+    """Write a volume with its standard error: that of several regions together is not known."""
+    unit = f" {table.units[name]}" if table.units.get(name) else ""
+    value, errors = float(table[name].sum()), table.columns.get(f"{name}_error")
+    if errors is None or len(table) > 1 or not errors[0] > 0.0:
+        return f"{_write_rounded(value)}{unit}"
+    digits = max(1 - math.floor(math.log10(errors[0])), 0)
+    return f"{value:,.{digits}f} ± {errors[0]:,.{digits}f}{unit}"
+
+
+def _write_beyond(table: Table) -> str:
+    unit: Any = table.units.get("level_of_detection")
+    levels = table["level_of_detection"]
+    level = f"{float(np.nanmean(levels)):.3g} {getattr(unit, 'symbol', unit) or ''}".rstrip()
+    parts = [f"{kind} {_write_volume(table, f'thresholded_{kind}')}" for kind in _KINDS]
+    return f"Beyond a level of detection of {level}: {'; '.join(parts)}"
 
 
 def _write_rounded(value: float) -> str:
@@ -122,12 +153,18 @@ def _choose_grid(tin: TIN, axes: Any) -> Grid:
     return cover(Bounds(west, south, east, north), max(east - west, north - south) / PIXELS)
 
 
-def _draw_difference(drawn: Map, tin: TIN) -> None:
+def _draw_difference(drawn: Map, tin: TIN, difference: Difference) -> None:
     colors = optional.load("matplotlib.colors", _PURPOSE)
     axes, (x, y, height) = drawn.axes, tin.points.T
     most = float(np.abs(height).max()) or 1.0
     ramp = colors.LinearSegmentedColormap.from_list("earthwork", palette.EARTHWORK)
-    cells = rasterize(tin, grid=_choose_grid(tin, axes))
+    is_drawn = ~difference.unchanged
+    if not _has_level(difference):
+        is_drawn[:] = True
+    if not is_drawn.any():
+        return
+    colored = tin if is_drawn.all() else TIN.from_triangles(tin.points, tin.triangles[is_drawn])
+    cells = rasterize(colored, grid=_choose_grid(tin, axes))
     image = draw_cells(axes, cells, limits=(-most, most), cmap=ramp, interpolation="nearest")
     levels = _choose_levels(height)
     if len(levels):

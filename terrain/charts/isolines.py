@@ -80,7 +80,7 @@ def contour_map(
         parse_title(title, usual),
         purpose=_PURPOSE,
         beside=_SCALE if has_bands else 0.0,
-        has_caption=True,
+        caption_lines=1,
     )
     axes = drawn.axes
     draw_shade(axes, shade_for_map(tin), limits=_LIGHTS)

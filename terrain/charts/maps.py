@@ -29,6 +29,8 @@ _WIDTH = 9.0
 """Of the picture, inches."""
 _LEFT, _TOP, _BOTTOM, _EDGE = 1.0, 0.58, 0.72, 0.25
 """Inches beside the map: for northings, the title, eastings with the CRS, and nothing."""
+_FIRST_LINE, _NEXT_LINE = 0.12, 0.18
+"""Inches above the map, besides, for lines of a caption."""
 _LEAST, _MOST = 0.3, 1.5
 """How tall a map is by its width."""
 _SHADES = (1, 255)
@@ -61,20 +63,20 @@ def start_map(
     purpose: str,
     pad: float = 0.02,
     beside: float = 0.0,
-    has_caption: bool = False,
+    caption_lines: int = 0,
 ) -> Map:
     """Return a figure as tall as the map asks for, with a title and labelled axes.
 
     ``purpose`` is what matplotlib is needed for; ``pad`` the ground around the TIN, as a share of
-    its extent; ``beside`` inches on the right of the map, for a scale or a legend; ``has_caption``
-    tells whether there is a line between title and map.
+    its extent; ``beside`` inches on the right of the map, for a scale or a legend; between title
+    and map are ``caption_lines``.
     """
     ground, bounds = find_ground(tin), tin.bounds
     east, north, _ = ground.scale
     around = pad * max(bounds.width, bounds.height)
     across, up = bounds.width + 2 * around, bounds.height + 2 * around
     tall = float(np.clip(up * north / (across * east), _LEAST, _MOST))
-    top = _TOP + 0.12 * has_caption
+    top = _TOP + (_FIRST_LINE + _NEXT_LINE * (caption_lines - 1) if caption_lines else 0.0)
     inner = _WIDTH - _LEFT - beside - _EDGE
     height = inner * tall + top + _BOTTOM
     figure = start_figure(purpose, _WIDTH, height)

@@ -19,6 +19,7 @@ from . import zones as parts
 from .planes import level_surface
 from .regional import find_regional_zones, subtract_in_regions
 from .subtraction import subtract
+from .uncertainty import add_errors, ask, find_detection
 from .volumes import measure
 
 if TYPE_CHECKING:
@@ -26,8 +27,10 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike
 
-    from ...base.arrays import Float64Array, Int64Array
+    from ...base.arrays import BoolArray, Float64Array, Int64Array
     from ...tin import TIN
+    from .detection import Detection
+    from .error_models import ErrorModel
     from .regional import Regional
 
 _SHARES = {"p05": 5.0, "p25": 25.0, "median": 50.0, "p75": 75.0, "p95": 95.0}
@@ -73,6 +76,7 @@ class Difference:
     _reference: Reference
     _sums: dict[str, float]
     _regions: tuple[Regional, ...] = ()
+    _detection: Detection | None = None
 
     def with_notes(self, notes: Sequence[str]) -> Difference:
         """Return the same with further notes in front of its own, those of its parts too.
@@ -107,13 +111,23 @@ class Difference:
         return self._sums["fill"] * self._reference.up
 
     @cached_property
+    def unchanged(self) -> BoolArray:
+        """Which triangles of ``tin`` count as unchanged, (m,) bool.
+
+        Those where the surfaces agree, or differ by no more than the level of detection.
+        """
+        classes = parts.classify(self.tin.triangulation, self._detection)
+        return np.asarray(classes == 0)
+
+    @cached_property
     def zero_line(self) -> Features:
         """The lines between parts that are cut, filled and unchanged, what is higher on the left.
 
         They are closed, or end at the boundary or where three parts meet. Where the surfaces
-        agree on an area its border is a line, such as that of a design that meets the ground.
+        agree on an area its border is a line, such as that of a design that meets the ground. With
+        a level of detection lines run where the difference is as large, up or down.
         """
-        return parts.trace_zero_line(self.tin.triangulation, self._reference)
+        return parts.trace_zero_line(self.tin.triangulation, self._reference, self._detection)
 
     @cached_property
     def zones(self) -> Features:
@@ -121,10 +135,12 @@ class Difference:
 
         Columns ``kind`` ("cut", "fill", "unchanged"), ``area``, ``volume``, ``lowest``,
         ``highest``; before them ``region``, at whose border polygons are cut, if there are any.
+        With a level of detection what differs by no more is "unchanged"; its ``volume`` is then
+        that of cut and fill together.
         """
         if self._regions:
-            return find_regional_zones(self._regions, self._reference)
-        return parts.find_zones(self.tin.triangulation, self._reference)
+            return find_regional_zones(self._regions, self._reference, self._detection)
+        return parts.find_zones(self.tin.triangulation, self._reference, self._detection)
 
     @cached_property
     def statistics(self) -> Table:
@@ -192,6 +208,10 @@ def difference(
     *,
     base: float | ArrayLike | None = None,
     regions: Any = None,
+    standard_error: float | str | ErrorModel | None = None,
+    other_standard_error: float | str | ErrorModel | None = None,
+    level_of_detection: float | None = None,
+    confidence: float | None = None,
     progress: Callable[[float], None] | None = None,
 ) -> Difference:
     """Subtract a surface from another one, exactly where both are.
@@ -207,6 +227,15 @@ def difference(
     regions : polygons, optional
         Subtract only in them, as of :func:`tinsmith.volume`: zones and volumes are then region by
         region.
+    standard_error, other_standard_error : float, str or ErrorModel, optional
+        Of the elevations of both surfaces, as of :func:`tinsmith.volume`: the volumes have standard
+        errors then.
+    level_of_detection : float, optional
+        Difference, in the unit of elevations, up to which a surface counts as unchanged, in zones
+        and zero line. Default none: whatever is not exactly 0 is cut or filled.
+    confidence : float, optional
+        In place of ``level_of_detection``: it is computed from the standard errors, as of
+        :func:`tinsmith.volume`.
     progress : callable, optional
         Called with the fraction done, ascending to 1.0, between the stages, and more finely while
         the volumes are summed up. What it raises ends the call.
@@ -246,23 +275,29 @@ def difference(
     array([3.])
     """
     done = Progress(progress)
+    asked = ask(
+        standard_error, other_standard_error, level_of_detection, confidence, is_plane=other is None
+    )
     measured = measure(
         tin, other, base, regions, None, Progress(done.stage(0.0, 0.4)), "Differences"
     )
-    reference = replace(measured.reference, notes=tuple(measured.table.notes))
+    tins = (tin, other)
+    detection = find_detection(measured, asked, tins)
+    table = add_errors(measured, asked, tins, detection, Progress(done.stage(0.4, 0.5)))
+    reference = replace(measured.reference, notes=tuple(table.notes))
     against = level_surface(tin, base) if other is None else other
     first = measured.first
     second = measured.other or Surface(against.points, against.triangles)
-    done(0.4)
+    done(0.5)
     holds = _make_holder(tin, against)
     parts_of: tuple[Regional, ...] = ()
     if measured.parts is None:
         sums = dict(zip(_kernel.SUMS, measured.sums[0].tolist(), strict=True))
-        surface = subtract(first, second, sums, holds, reference)
+        surface = subtract(first, second, sums, holds, reference, detection)
     else:
-        surface, sums, parts_of = subtract_in_regions(first, second, measured, holds)
+        surface, sums, parts_of = subtract_in_regions(first, second, measured, holds, detection)
     done.end()
-    return Difference(surface, measured.table, reference.notes, reference, sums, parts_of)
+    return Difference(surface, table, reference.notes, reference, sums, parts_of, detection)
 
 
 def _make_holder(tin: TIN, other: TIN) -> Callable[[Any], Any]:

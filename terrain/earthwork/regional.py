@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from ...base.arrays import Int64Array
     from ...tin import TIN
     from ..surface import Reference
+    from .detection import Detection
     from .volumes import Measured
 
 
@@ -31,7 +32,11 @@ class Regional(NamedTuple):
 
 
 def subtract_in_regions(
-    first: Surface, second: Surface, measured: Measured, holds: Callable[[Any], Any]
+    first: Surface,
+    second: Surface,
+    measured: Measured,
+    holds: Callable[[Any], Any],
+    detection: Detection | None = None,
 ) -> tuple[TIN, dict[str, float], tuple[Regional, ...]]:
     """Return the difference where any region is with its sums, and that in each region.
 
@@ -48,7 +53,7 @@ def subtract_in_regions(
         by_name = dict(zip(_kernel.SUMS, sums.tolist(), strict=True))
         if by_name["area"] > 0.0:
             within = _hold_too(holds, [region])
-            tin = subtract(share, second, by_name, within, measured.reference)
+            tin = subtract(share, second, by_name, within, measured.reference, detection)
             found.append((Regional(name, tin), by_name))
     if not found:
         raise PointsError("The regions lie outside of what both surfaces cover: they hold nothing.")
@@ -58,13 +63,15 @@ def subtract_in_regions(
     pieces = cut_pieces(first, Pieces(whole, np.zeros(len(whole.triangles), np.int32)))
     sums_of_all = _sum(pieces, second)
     within = _hold_too(holds, [whole])
-    tin = subtract(pieces.surface, second, sums_of_all, within, measured.reference)
+    tin = subtract(pieces.surface, second, sums_of_all, within, measured.reference, detection)
     return tin, sums_of_all, tuple(one for one, _ in found)
 
 
-def find_regional_zones(parts: Sequence[Regional], reference: Reference) -> Features:
+def find_regional_zones(
+    parts: Sequence[Regional], reference: Reference, detection: Detection | None = None
+) -> Features:
     """Return the parts that are cut, filled or unchanged, region by region."""
-    zones = [find_zones(one.tin.triangulation, reference) for one in parts]
+    zones = [find_zones(one.tin.triangulation, reference, detection) for one in parts]
     names = [
         np.repeat(np.array([one.name], object), len(z)) for one, z in zip(parts, zones, strict=True)
     ]

@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from ...base.arrays import Float64Array, Int32Array
     from ...tin import TIN
     from ..surface import Reference
+    from .detection import Detection
 
     _Mesh = tuple[Float64Array, Int32Array]
 
@@ -47,11 +48,13 @@ def subtract(
     sums: Mapping[str, float],
     holds: Callable[[Any], Any],
     reference: Reference,
+    detection: Detection | None = None,
 ) -> TIN:
     """Return the second surface less the first as a TIN, where both are.
 
     ``sums`` are those of the kernel of the same surfaces, which the volumes of the TIN must be;
-    ``holds`` tells whether both surfaces hold places, (k, 2).
+    ``holds`` tells whether both surfaces hold places, (k, 2). The TIN is cut where the difference
+    is 0, and as large as the level of ``detection``.
 
     Raises PointsError if they do not overlap, or only in what is thinner than coordinates can tell.
     """
@@ -66,8 +69,19 @@ def subtract(
         raise PointsError(_TOO_THIN)
     triangles, cells = fan_out(made.offsets, made.corners)
     slack = _measure_rounding(*trimmed, made.vertices, triangles, made.triangles[cells])
-    given = cut_at_zero(made.vertices, triangles)
-    return _choose_surface(_make_sound(*given, holds), reference, sums, slack)
+    given = _cut(made.vertices, triangles, detection)
+    return _choose_surface(_make_sound(*given, holds, detection), reference, sums, slack)
+
+
+def _cut(points: Float64Array, triangles: Int32Array, detection: Detection | None) -> _Mesh:
+    """Cut a difference where it is 0, and as large as the level of detection."""
+    points, triangles = cut_at_zero(points, triangles)
+    if detection is None:
+        return points, triangles
+    divided = detection.divide(points, triangles)
+    made = slice(len(points), None)
+    detection.remember(divided.points[made, :2], divided.levels[made])
+    return divided.points, divided.triangles
 
 
 def _choose_surface(
@@ -180,18 +194,21 @@ def _sum_classes(surface: TIN) -> dict[str, float]:
 
 
 def _make_sound(
-    points: Float64Array, triangles: Int32Array, holds: Callable[[Any], Any]
+    points: Float64Array,
+    triangles: Int32Array,
+    holds: Callable[[Any], Any],
+    detection: Detection | None,
 ) -> Iterator[_Mesh]:
     """Yield the overlay mended, with walls a rounding wider, and triangulated anew.
 
-    Where a new vertex moved the zero line, it is cut once more.
+    Where a new vertex moved the zero line, or one of the level of detection, it is cut once more.
     """
     for placed in (points, part_places(points, triangles)):
         mended = mend(placed, triangles)
         if mended is not None:
             yield mended
     for found in rebuild(points, triangles, holds):
-        yield mend(*cut_at_zero(*found)) or found
+        yield mend(*_cut(*found, detection)) or found
 
 
 def _describe_extent(surface: Surface) -> str:

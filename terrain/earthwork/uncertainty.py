@@ -10,6 +10,7 @@ from ...base.errors import OptionError
 from ...base.results import Table
 from ...base.sentences import coordinate, counted
 from .. import _kernel
+from ..surface import double_areas
 from .cells import Overlay
 from .covariances import measure_variances
 from .detection import Detection, find_rounding, make_detection, require_level
@@ -220,10 +221,12 @@ def _find_shares(corners: Float64Array, places: Float64Array) -> Float64Array:
 def _sum_beyond(cells: Cells, detection: Detection) -> Float64Array:
     """Return cut and fill beyond the level, their areas, and the integral of the level."""
     divided = detection.divide(cells.points, cells.triangles)
-    points, triangles = divided.points, divided.triangles
-    groups = divided.classify().astype(np.int32) + np.int32(1)
+    points, classes = divided.points, divided.classify()
+    is_sound = double_areas(points, divided.triangles) > 0.0  # rounding turns over the thinnest
+    flat = np.ascontiguousarray(points * (1.0, 1.0, 0.0))
     heights = np.ascontiguousarray(points[:, 2])
-    flat = np.ascontiguousarray(np.column_stack([points[:, :2], np.zeros(len(points))]))
+    triangles = np.ascontiguousarray(divided.triangles[is_sound])
+    groups = classes[is_sound].astype(np.int32) + np.int32(1)
     sums = _kernel.sum_heights(flat, triangles, heights, groups, 3, 1.0)
     column = _kernel.SUMS.index
     parts = [sums[0, column("cut")], sums[2, column("fill")]]

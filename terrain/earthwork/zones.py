@@ -11,29 +11,39 @@ from ...base.results import Features
 from ...tin import topology
 from .. import _kernel
 from ..surface import cut_at_repeats
+from .detection import classify_beyond
 from .meshes import number_parts
 
 if TYPE_CHECKING:
     from ...base.arrays import BoolArray, Float64Array, Int8Array, Int32Array, Int64Array
     from ...tin.triangulation import Triangulation
     from ..surface import Reference
+    from .detection import Detection
 
 NAMES = {-1: "cut", 0: "unchanged", 1: "fill"}
 
 
-def classify(mesh: Triangulation) -> Int8Array:
-    """Return +1 where triangles are filled, -1 where cut, 0 where nothing changes."""
+def classify(mesh: Triangulation, detection: Detection | None = None) -> Int8Array:
+    """Return +1 where triangles are filled, -1 where cut, 0 where nothing changes.
+
+    With a level of detection, what differs by no more does not change.
+    """
+    if detection is not None:
+        levels = detection.measure(mesh.points[:, :2])
+        return classify_beyond(mesh.points[:, 2], levels, mesh.triangles)
     # No triangle has both signs, but for roundings, which the mean does not mind.
     classes: Int8Array = np.sign(mesh.points[mesh.triangles, 2].sum(axis=1)).astype(np.int8)
     return classes
 
 
-def trace_zero_line(mesh: Triangulation, reference: Reference) -> Features:
+def trace_zero_line(
+    mesh: Triangulation, reference: Reference, detection: Detection | None = None
+) -> Features:
     """Return the lines between cut, fill and unchanged parts, what is higher on the left.
 
     Lines end where three parts meet, and at the boundary.
     """
-    classes = classify(mesh)
+    classes = classify(mesh, detection)
     across = np.where(mesh.neighbors >= 0, classes[mesh.neighbors], np.int8(127))
     triangle, corner = np.nonzero(across < classes[:, None])
     start, end = topology.ends(mesh.triangles, triangle.astype(np.int64), corner.astype(np.int64))
@@ -88,9 +98,11 @@ def number_zones(mesh: Triangulation, classes: Int8Array) -> tuple[BoolArray, In
     return barrier, number_parts(mesh.neighbors, barrier)
 
 
-def find_zones(mesh: Triangulation, reference: Reference) -> Features:
+def find_zones(
+    mesh: Triangulation, reference: Reference, detection: Detection | None = None
+) -> Features:
     """Return the connected parts that are cut, filled or unchanged as polygons."""
-    classes = classify(mesh)
+    classes = classify(mesh, detection)
     barrier, part = number_zones(mesh, classes)
     count = int(part.max()) + 1
     rings, ring_offsets, polygon_offsets = _close_rings(mesh, barrier, part, count)

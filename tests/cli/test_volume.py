@@ -179,3 +179,71 @@ def test_what_cannot_be_is_refused(files, tmp_path, monkeypatch, arguments, code
     result = run(*(named.get(one, one) for one in arguments), code=code)
     assert part in " ".join(result.stderr.split())
     assert not list(tmp_path.iterdir())
+
+
+# ----------------------------------------------------------------- standard errors
+
+
+def test_standard_errors_and_a_level_are_told_and_written(files, tmp_path):
+    given = ["--standard-error", "0.3", "--other-standard-error", "0.4", "--confidence", "0.95"]
+    more = ["--systematic", "0.1", "--correlation-range", "20", "--correlation", "spherical"]
+    outputs = ["-o", tmp_path / "change.csv", "-o", tmp_path / "change.gpkg"]
+    result = run("volume", *files, *given, *more, *outputs, "--json")
+    (row,) = json.loads(result.stdout)["rows"]
+    how = {"correlation_range": 20.0, "correlation": "spherical"}
+    table = ts.volume(
+        *map(ts.read_tin, files),
+        standard_error=ts.ErrorModel(0.3, systematic=0.1, **how),
+        other_standard_error=ts.ErrorModel(0.4, **how),
+        confidence=0.95,
+    )
+    for name in ("net_error", "cut_error", "thresholded_cut", "level_of_detection"):
+        assert row[name] == table[name][0], name
+    assert "±" in result.stderr
+    assert "where the difference exceeds 0.9994 m" in result.stderr
+    with (tmp_path / "change.csv").open(encoding="utf-8", newline="") as file:
+        (written,) = csv.DictReader(file)
+    assert float(written["net_error (m³)"]) == table["net_error"][0]
+    pyogrio = pytest.importorskip("pyogrio")
+    _, _, _, (kinds, *_) = pyogrio.raw.read(tmp_path / "change.gpkg")
+    assert sorted(kinds) == ["cut", "fill", "unchanged"]
+
+
+def test_the_column_of_a_survey_is_the_standard_error(tmp_path):
+    path = tmp_path / "points.csv"
+    path.write_text("x,y,z,sz\n0,0,5,0.1\n6,0,5,0.1\n6,4,5,0.2\n0,4,5,0.2\n", encoding="utf-8")
+    result = run("volume", path, "--base", "4", "--standard-error", "sz", "--json")
+    (row,) = json.loads(result.stdout)["rows"]
+    survey = ts.triangulate(ts.read(path))
+    assert row["cut_error"] == ts.volume(survey, base=4.0, standard_error="sz")["cut_error"][0]
+    wrong = run("volume", path, "--base", "4", "--standard-error", "sigma", code=2)
+    assert "'sigma'" in wrong.stderr
+
+
+def test_a_difference_up_to_the_level_of_detection_is_unchanged(files, tmp_path):
+    found = tmp_path / "zones.gpkg"
+    result = run("diff", *files, "--level-of-detection", "0.5", "-o", found, "--json")
+    record = json.loads(result.stdout)
+    # The ramp rises by 0.1 a metre from -1: beyond 0.5 up to 5 m and from 15 m on.
+    assert record["volumes"]["thresholded_cut_area"] == pytest.approx(5 * 40, rel=1e-9)
+    assert record["volumes"]["thresholded_fill_area"] == pytest.approx(25 * 40, rel=1e-9)
+    assert "by more than 0.5 m" in result.stderr
+
+
+@pytest.mark.parametrize(
+    ("given", "sentence"),
+    [
+        (["--correlation-range", "20"], "--correlation-range needs a --standard-error"),
+        (["--confidence", "0.95"], "--standard-error"),
+        (["--standard-error=-1"], "Invalid --standard-error -1"),
+        (["--level-of-detection", "0"], "Invalid --level-of-detection 0"),
+    ],
+)
+def test_wrong_errors_are_refused_in_the_words_of_the_command(files, given, sentence):
+    assert sentence in run("volume", *files, *given, code=2).stderr
+
+
+def test_a_stage_storage_table_has_no_errors(files):
+    given = ["--stage-storage", "--interval", "1", "--standard-error", "0.1"]
+    refused = run("volume", files[0], *given, code=2).stderr
+    assert "--standard-error is not for --stage-storage" in refused

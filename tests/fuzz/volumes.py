@@ -144,7 +144,96 @@ def examine_regions(case: Case) -> str:
     return f"{len(case['regions'])} regions"
 
 
+def generate_errors(rng: np.random.Generator) -> Case:
+    """Two surfaces with regions as above, errors of both, and a level of detection or none."""
+    case = generate_regions(rng)
+    words = ["exponential", "spherical", "gaussian"]
+    extent = float(np.ptp(np.array(case["points"], float)[:, :2]))
+    models = [
+        {
+            "standard_error": float(rng.choice([0.0, 0.1, 2.0])),
+            "systematic": float(rng.choice([0.0, 0.3])),
+            "correlation_range": float(rng.choice([0.0, 0.1, 1.0, 20.0]) * extent),
+            "correlation": str(rng.choice(words)),
+            "nugget": float(rng.choice([0.0, 0.4, 1.0])),
+        }
+        for _ in range(2)
+    ]
+    level = float(rng.choice([0.1, 0.5, 1.0, 3.0]))
+    return case | {"models": models, "level": level, "in_regions": bool(rng.random() < 0.4)}
+
+
+def examine_errors(case: Case) -> str:
+    """Ask for the errors of derivatives, and for zones that are the volumes beyond the level."""
+    regions = case["regions"] if case["in_regions"] else None
+    models = [ts.ErrorModel(**one) for one in case["models"]]
+    options = {"standard_error": models[0], "other_standard_error": models[1]}
+    try:
+        tin, other = (ts.triangulate(case[name]) for name in ("points", "other"))
+        table = ts.volume(tin, other, regions=regions, level_of_detection=case["level"], **options)
+    except ts.TinsmithError as error:
+        return f"refused: {type(error).__name__}"
+    examine_net_errors(tin, other, regions, table, models)
+    slack = 64.0 * rounding_of(tin, other)
+    relief = float(np.ptp(np.concatenate([tin.points, other.points])[:, 2]))
+    for name in ("cut", "fill"):
+        whole, beyond = table[name], table[f"thresholded_{name}"]
+        least = case["level"] * table[f"thresholded_{name}_area"]
+        assert (beyond <= whole * (1 + 1e-9) + slack * relief).all(), name
+        assert (beyond >= least * (1 - 1e-9)).all(), name
+    try:
+        found = ts.difference(tin, other, regions=regions, level_of_detection=case["level"])
+    except ts.TinsmithError as error:
+        return f"measured; refused: {type(error).__name__}"
+    assert ts.check(found.tin).ok, repr(ts.check(found.tin))
+    relief = float(np.abs(found.tin.points[:, 2]).max())
+    ranges = float(np.ptp(tin.points[:, 2]) + np.ptp(other.points[:, 2]))
+    zones, area = found.zones.columns, float(table["area"].sum())
+    assert abs(zones["area"].sum() - area) <= slack, "area of zones"
+    for kind in ("cut", "fill"):
+        volume = zones["volume"][zones["kind"].astype(str) == kind].sum()
+        apart = abs(volume - table[f"thresholded_{kind}"].sum())
+        most = slack * (relief + ranges) + 2e-7 * area * relief
+        assert apart <= most, f"{kind} beyond the level: off by {apart}"
+    return "with a level"
+
+
+def examine_net_errors(tin: Any, other: Any, regions: Any, table: Any, models: Any) -> None:
+    """Ask for the error of a net volume by how it changes with each elevation, which is linear."""
+    variances = np.zeros(len(table))
+    for which, model in enumerate(models):
+        surface = (tin, other)[which]
+        found = []
+        for vertex in range(len(surface.points)):
+            moved = surface.points.copy()
+            moved[vertex, 2] += 1.0
+            pair = [tin, other]
+            pair[which] = ts.TIN.from_triangles(moved, surface.triangles)
+            found.append(ts.volume(*pair, regions=regions)["net"] - table["net"])
+        weights = np.array(found)
+        xy = surface.points[:, :2]
+        away = np.hypot(*(xy[:, None] - xy[None]).transpose(2, 0, 1))
+        rho = np.eye(len(xy))
+        if model.correlation_range > 0:
+            near = np.where(away < model.reach, model.correlate(away), 0.0)
+            rho = (1 - model.nugget) * near + model.nugget * rho
+        covariance = model.standard_error**2 * rho + model.systematic**2
+        variances += np.einsum("ik,ij,jk->k", weights, covariance, weights)
+    most = sum(one.standard_error + one.systematic for one in models)
+    relief = float(np.abs(np.concatenate([tin.points, other.points])[:, 2]).max()) + 1.0
+    # Derivatives are differences of volumes, each of which is rounded.
+    slack = (1e-11 * float(table["area"].max()) + 64.0 * rounding_of(tin, other)) * relief * most
+    apart = np.abs(table["net_error"] - np.sqrt(np.maximum(variances, 0.0)))
+    assert (apart <= 1e-6 * table["net_error"] + slack).all(), f"net_error: off by {apart}"
+
+
 CAMPAIGNS = (
     Campaign("volumes", "cut and fill, and the difference of two TINs", generate, examine),
+    Campaign(
+        "standard_errors",
+        "standard errors of volumes, and the level of detection",
+        generate_errors,
+        examine_errors,
+    ),
     Campaign("regions", "zones and volumes in regions", generate_regions, examine_regions),
 )

@@ -11,13 +11,14 @@ from qgis.core import (
 )
 
 from ..inputs import POLYGONS, Lines, Surface
-from ..options import describe, number
+from ..options import describe, number, text
 from ..results import style_on_loading
 from ..styles import style_earthwork
 from .base import PICTURES, TABLE_FILES, CommandAlgorithm, Run
 
 _MEASURED = {"CUT": "cut", "FILL": "fill", "NET": "net", "AREA": "area"}
 _GROUND = Surface(words="Ground")
+_ERROR = "A number in the unit of elevations, or the column of the points that has it."
 
 
 class VolumeAlgorithm(CommandAlgorithm):
@@ -29,11 +30,46 @@ class VolumeAlgorithm(CommandAlgorithm):
     explanation = (
         "Both triangulations are overlaid, exactly. Fill is where the design, or the level, is "
         "above the ground, cut where it is below; net is fill less cut. With regions there is a "
-        "row for each in the table."
+        "row for each in the table. With the standard errors of elevations volumes get theirs. "
+        "What differs by no more than the level of detection is unchanged in zones and map."
     )
     surfaces = (_GROUND, Surface("DESIGN", "Design", False))
     lines = (Lines("REGIONS", "Regions", "--regions", "Polygons to measure in.", kind=POLYGONS),)
-    options = (number("BASE", "or a level", "--base", "Elevation in place of a design."),)
+    options = (
+        number("BASE", "or a level", "--base", "Elevation in place of a design."),
+        text("ERROR", "Standard error of the ground", "--standard-error", _ERROR),
+        text("DESIGN_ERROR", "Standard error of the design", "--other-standard-error", _ERROR),
+        number(
+            "RANGE",
+            "Range of correlated errors",
+            "--correlation-range",
+            "Distance over which errors of points are correlated; independent if empty.",
+            least=0.0,
+            advanced=True,
+        ),
+        number(
+            "SYSTEMATIC",
+            "Systematic error of the ground",
+            "--systematic",
+            "Standard error of a shift of the whole ground.",
+            least=0.0,
+            advanced=True,
+        ),
+        number(
+            "LEVEL_OF_DETECTION",
+            "Level of detection",
+            "--level-of-detection",
+            "Difference up to which the surface counts as unchanged.",
+            least=0.0,
+        ),
+        number(
+            "CONFIDENCE",
+            "or its confidence",
+            "--confidence",
+            "Such as 0.95: the level is computed from the standard errors.",
+            least=0.0,
+        ),
+    )
 
     def add_outputs(self) -> None:
         """Add the table, the zones, a map, and sums for models."""

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from ..command import command
+from ..error_options import error_options, name_flag, take_errors
 from ..job import Job, name_features
 from ..output.counts import mesh_counts
 from ..output.facts import Facts, list_rows, name_units
@@ -57,27 +58,33 @@ _LEAST_AREA = 0.005
 @number_option("--level", "ELEVATION", "Level of the table.", name="levels", multiple=True)
 @number_option("--interval", "LENGTH", "Interval of the levels of the table.")
 @click.option("--title", metavar="TEXT", help="Title of the map; default the names of the files.")
+@error_options
 @tiled_options()
 def volume(files: tuple[Path, ...], regions: Path | None, job: Job, **asked: Any) -> None:
-    """Compute cut and fill from the TIN in GROUND to that in DESIGN, or to a level.
+    r"""Compute cut and fill from the TIN in GROUND to that in DESIGN, or to a level.
 
     Both triangulations are overlaid exactly; either file may hold points, from which the TIN is
-    built. Fill is where the design, or the level, is above the ground, cut where it is below.
+    built. Fill is where the design, or the level, is above the ground, cut where it is below. With
+    the standard errors of elevations volumes get theirs.
 
     Example:
       tinsmith volume sample_data/site_survey.csv sample_data/design_pad.csv --codes -o pad.csv
       tinsmith volume sample_data/site_survey.csv --crs EPSG:32616 --base 325 -o cut.gpkg
       tinsmith volume sample_data/site_survey.csv --stage-storage --interval 0.5 -o stages.csv
+      tinsmith volume before.csv after.csv --standard-error 0.02 --other-standard-error 0.03 \
+        --confidence 0.95 -o change.png
     """
     from ...terrain import difference, earthwork_map, stage_storage
     from ...terrain import volume as measure
 
-    _require_one_base(files, asked)
+    errors = take_errors(asked)
+    _require_one_base(files, asked, errors)
     inputs = job.list_inputs(*files, more=name_features(regions, "the file of --regions"))
     kinds = ["Table"] if asked["stage_storage"] else ["Table", "Features", "picture"]
     planned = job.plan(inputs, *kinds)
     held = [kind for kind in ("Features", "picture") if planned.holds(kind)]
     whole = "--stage-storage" if asked["stage_storage"] else "a map" if held else ""
+    whole = whole or (name_flag(next(iter(errors))) if errors else "")
     cloud = choose_tiles(job, files[0], whole=whole, others=files[1:])
     if cloud is not None:
         _measure_tiles(cloud, planned, files, {"regions": regions, "base": asked["base"]}, job)
@@ -90,10 +97,10 @@ def volume(files: tuple[Path, ...], regions: Path | None, job: Job, **asked: Any
             levels, interval = asked["levels"] or None, asked["interval"]
             table = stage_storage(surfaces[0], levels=levels, interval=interval, region=chosen)
         elif planned.holds("Features") or planned.holds("picture"):
-            found = difference(*surfaces, base=base, regions=chosen, progress=progress)
+            found = difference(*surfaces, base=base, regions=chosen, progress=progress, **errors)
             table = found.volumes  # of the same overlay
         else:
-            table = measure(*surfaces, base=base, regions=chosen, progress=progress)
+            table = measure(*surfaces, base=base, regions=chosen, progress=progress, **errors)
     planned.write("Table", table)
     planned.write("Features", lambda: found.zones)
     title = asked["title"] or f"Cut and fill: {' to '.join(make_title(file) for file in files)}"
@@ -134,7 +141,7 @@ def _list_facts(files: Sequence[Path], table: Table, counts: list[Row]) -> Facts
 # ---------------------------------------------------------------- what is given
 
 
-def _require_one_base(files: Sequence[Path], asked: dict[str, Any]) -> None:
+def _require_one_base(files: Sequence[Path], asked: dict[str, Any], errors: dict[str, Any]) -> None:
     if len(files) > 2:
         raise click.UsageError(
             f"{len(files)} files are given: one ground and at most one design are allowed."
@@ -148,6 +155,8 @@ def _require_one_base(files: Sequence[Path], asked: dict[str, Any]) -> None:
         raise click.UsageError("--level and --interval are for --stage-storage.")
     if asked["levels"] and asked["interval"] is not None:
         raise click.UsageError("--level and --interval are both given: choose one.")
+    if asked["stage_storage"] and errors:
+        raise click.UsageError(f"{name_flag(next(iter(errors)))} is not for --stage-storage.")
 
 
 # ---------------------------------------------------------------- for people
@@ -160,10 +169,27 @@ def _list_volumes(table: Table) -> list[Row]:
             rows.append(("Region", str(table["region"][row])))
         for name in ("cut", "fill"):
             area = _format_quantity(table, f"{name}_area", row)
-            rows.append((name.capitalize(), f"{_format_quantity(table, name, row)} over {area}"))
-        rows.append(("Net", f"{_format_quantity(table, 'net', row)} (fill less cut)"))
+            rows.append((name.capitalize(), f"{_format_volume(table, name, row)} over {area}"))
+        rows.append(("Net", f"{_format_volume(table, 'net', row)} (fill less cut)"))
         rows.append(("Area", _format_area(table, row)))
+        if "level_of_detection" in table.columns:
+            rows.append(("Beyond", _format_beyond(table, row)))
     return rows
+
+
+def _format_volume(table: Table, name: str, row: int) -> str:
+    """Write a volume and its standard error."""
+    text, error = _format_quantity(table, name, row), f"{name}_error"
+    return f"{text} ± {_format_quantity(table, error, row)}" if error in table.columns else text
+
+
+def _format_beyond(table: Table, row: int) -> str:
+    level = _format_quantity(table, "level_of_detection", row, digits=4)
+    parts = [
+        f"{name} {_format_quantity(table, f'thresholded_{name}', row)}"
+        for name in ("cut", "fill", "net")
+    ]
+    return f"{', '.join(parts)}, where the difference exceeds {level}"
 
 
 def _format_area(table: Table, row: int) -> str:
@@ -184,11 +210,11 @@ def _list_stages(table: Table) -> list[Row]:
     return rows
 
 
-def _format_quantity(table: Table, name: str, row: int) -> str:
+def _format_quantity(table: Table, name: str, row: int, digits: int = 2) -> str:
     unit = table.units.get(name)
     symbol = getattr(unit, "symbol", unit) or ""
     value = float(table[name][row])
-    text = f"{value:,.2f} {symbol}".rstrip()
+    text = f"{value:,.{digits}f} {symbol}".rstrip()
     if symbol in _FEET:
         text += f" ({value / _CUBIC_YARD:,.2f} yd³)"
     return text
