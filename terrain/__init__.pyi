@@ -26,6 +26,8 @@ from .earthwork import ErrorModel as ErrorModel
 from .earthwork import difference as difference
 from .earthwork import stage_storage as stage_storage
 from .earthwork import volume as volume
+from .earthwork.grading import BalancedPad as BalancedPad
+from .earthwork.grading import balance as balance
 from .earthwork.grading import grade as grade
 from .earthwork.grading import paste as paste
 from .gridding import height_above as height_above

@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ....base.checks import as_number
-from ....base.errors import LinesError, OptionError, PointsError
+from ....base.errors import PointsError
 from ....base.products import product
 from ....base.progress import Progress
-from ....base.sentences import coordinate, height
+from ....base.sentences import coordinate
 from ....tin import Breakline, triangulate
-from ....tin.constraints.polygons import gather_rings_of_regions
 from ...surface import find_reference
+from .pads import find_level, make_pad, read_polygon
 from .pasting import join_surfaces
 from .seams import find_area, measure_tolerance
 from .slopes import find_slope
@@ -26,6 +26,7 @@ if TYPE_CHECKING:
 
     from ....base.arrays import Float64Array
     from ....tin import TIN
+    from .pads import Pad
     from .slopes import Slope
 
 _SHARE = 1e-6
@@ -42,9 +43,10 @@ def grade(
     *,
     cut_slope: float,
     fill_slope: float,
+    gradient: tuple[float, float] | None = None,
     progress: Callable[[float], None] | None = None,
 ) -> TIN:
-    """Grade a level pad into the ground, with side slopes to where they meet it.
+    """Grade a pad into the ground, with side slopes to where they meet it.
 
     From the edge of the pad a slope rises where the ground is higher (cut), and falls where it is
     lower (fill), to the daylight line. Around corners the slopes are cones; in a notch that of the
@@ -57,9 +59,13 @@ def grade(
     pad : (k, 2) or (k, 3) array, or polygon
         Ring of the pad's edge in the CRS of the ground, convex or not.
     elevation : float, optional
-        Of the pad, in the unit of the ground's; default that of the ring, which must be level.
+        Of the pad, in the unit of the ground's; default that of the ring, which must be level. Of
+        a pad that is not level that at its centroid.
     cut_slope, fill_slope : float
         Horizontal over vertical: 2 is 2:1, two along for one up or down.
+    gradient : tuple of two floats, optional
+        Rise of the pad to the east and to the north, vertical over horizontal: (0.02, 0) is 2 % up
+        to the east. Default level. A pad that is not level must be convex.
     progress : callable, optional
         Called with the fraction done, ascending to 1.0, as slopes are followed and pasted into the
         ground. What it raises ends the call.
@@ -74,9 +80,10 @@ def grade(
     Raises
     ------
     OptionError
-        If a slope is no number above 0, or the elevation none.
+        If a slope is no number above 0, or the elevation none; if the gradient is as steep as a
+        slope.
     LinesError
-        If the pad is no ring, or crosses itself.
+        If the pad is no ring, or crosses itself; if one that is not level has notches.
     PointsError
         If the pad lies off the ground, or the ground ends before a slope meets it: with the place.
     CrsError
@@ -84,10 +91,11 @@ def grade(
 
     Notes
     -----
-    Slopes beside edges are exact planes, and cones have facets of two degrees: daylight is short by
-    at most 0.00016 of its distance. Where the pad has a notch, slopes meet where they are as far
-    from both edges. What is cut or filled farther away, and does not reach the pad along its slope,
-    stays ground. Time and vertices are in proportion to the corners of the pad.
+    Slopes are measured at right angles to the edge in the plane. Beside edges they are exact
+    planes, and cones have facets of two degrees: daylight is short by at most 0.00016 of its
+    distance. Where the pad has a notch, slopes meet where they are as far from both edges. What is
+    cut or filled farther away, and does not reach the pad along its slope, stays ground. Time and
+    vertices are in proportion to the corners of the pad.
 
     Examples
     --------
@@ -100,67 +108,64 @@ def grade(
     """
     done = Progress(progress)
     reference = find_reference(tin, "Slopes")
-    cut = 1.0 / (_require_ratio("cut_slope", cut_slope) * reference.up)
-    fill = -1.0 / (_require_ratio("fill_slope", fill_slope) * reference.up)
-    polygon, level = _read_pad(pad, elevation)
+    slopes = require_slopes(cut_slope, fill_slope)
+    polygon, ring = read_polygon(pad)
+    level = find_level(ring, elevation)
+    made = make_pad(polygon, level, gradient, reference.up, *slopes)
     area = find_area(tin)
-    _require_on_ground(area, polygon, "The pad lies off")
-    local = tin.replace(crs=None, elevation_unit=None)
-    used = tin.points[tin.triangles, 2]
-    farthest = {cut: (used.max() - level) / cut, fill: (used.min() - level) / fill}
-    slopes = []
-    # Farther away is no ground.
-    across = math.hypot(*(tin.points.max(axis=0) - tin.points.min(axis=0))[:2])
-    for number, (rate, reach) in enumerate(farthest.items(), 1):
-        if reach > 0:
-            slope = find_slope(local, area, polygon, level, rate, min(float(reach), across))
-            slopes.append(slope)
-        done(number * _SLOPE)
-    patch = build_patch(tin, polygon, level, slopes)
-    most = _SHARE * patch.area
-    _require_on_ground(area, find_area(patch), "A slope reaches beyond", most)
+    require_on_ground(area, polygon)
+    patch = make_patch(tin, made, slopes, reference.up, area, done)
     done(0.5)
     graded = join_surfaces(tin, patch, reference, area, "daylight", progress=done.stage(0.5, 1.0))
     done.end()
     return graded
 
 
+def make_patch(
+    tin: TIN, pad: Pad, ratios: tuple[float, float], up: float, area: Any, done: Progress
+) -> TIN:
+    """Return a pad that lies on the ground and its slopes, of cuts and of fills, as a surface.
+
+    ``up`` is the factor from elevations to the unit of eastings, and ``area`` what the ground
+    covers. Raises PointsError if it ends before a slope meets it.
+    """
+    cut, fill = (sign / (ratio * up) for sign, ratio in zip((1, -1), ratios, strict=True))
+    local = tin.replace(crs=None, elevation_unit=None)
+    used = tin.points[tin.triangles, 2]
+    low, high = pad.find_range()
+    farthest = {cut: (used.max() - low) / cut, fill: (used.min() - high) / fill}
+    slopes = []
+    # Farther away is no ground.
+    across = math.hypot(*(tin.points.max(axis=0) - tin.points.min(axis=0))[:2])
+    for number, (rate, reach) in enumerate(farthest.items(), 1):
+        if reach > 0:
+            slopes.append(find_slope(local, area, pad, rate, min(float(reach), across)))
+        done(number * _SLOPE)
+    patch = build_patch(tin, pad, slopes)
+    most = _SHARE * patch.area
+    _require_on_ground(area, find_area(patch), "A slope reaches beyond", most)
+    return patch
+
+
 # ---------------------------------------------------------------- what is given
 
 
-def _require_ratio(name: str, value: Any) -> float:
+def require_slopes(cut_slope: Any, fill_slope: Any) -> tuple[float, float]:
+    """Return both slopes, horizontal over vertical.
+
+    Raises OptionError if one is no number above 0.
+    """
     unit = "(horizontal over vertical: 2 is 2:1)"
-    return as_number(name, value, "a ratio", above=0, unit=unit)
+    cut = as_number("cut_slope", cut_slope, "a ratio", above=0, unit=unit)
+    return cut, as_number("fill_slope", fill_slope, "a ratio", above=0, unit=unit)
 
 
-def _read_pad(pad: Any, elevation: Any) -> tuple[Any, float]:
-    """Return the pad as a polygon of shapely, and its level."""
-    import shapely
+def require_on_ground(area: Any, polygon: Any) -> None:
+    """Refuse a pad that does not lie on the ground.
 
-    regions = gather_rings_of_regions([pad], "pad")
-    if len(regions) != 1 or len(regions[0]) != 1:
-        raise OptionError("pad", "several rings", "one ring, without holes")
-    ring = regions[0][0]
-    if elevation is None:
-        elevation = _find_level(ring)
-    level = as_number("elevation", elevation)
-    polygon = shapely.Polygon(ring[:, :2])
-    if not polygon.is_valid or not polygon.area > 0:
-        raise LinesError(f"Invalid pad: {shapely.is_valid_reason(polygon)}.")
-    return shapely.orient_polygons(polygon), level
-
-
-def _find_level(ring: Float64Array) -> float:
-    if ring.shape[1] < 3:
-        raise OptionError("elevation", None, "a number, where the pad's ring has no elevations")
-    low, high = float(ring[:, 2].min()), float(ring[:, 2].max())
-    if low != high:
-        raise OptionError(
-            "elevation",
-            None,
-            f"a number: the pad's ring is not level ({height(low)} to {height(high)})",
-        )
-    return low
+    Raises PointsError.
+    """
+    _require_on_ground(area, polygon, "The pad lies off")
 
 
 def _require_on_ground(area: Any, shape: Any, what: str, most: float = 0.0) -> None:
@@ -173,11 +178,11 @@ def _require_on_ground(area: Any, shape: Any, what: str, most: float = 0.0) -> N
         raise PointsError(f"{what} the ground, at {coordinate(place.x)} {coordinate(place.y)}.")
 
 
-def build_patch(tin: TIN, pad: Any, level: float, slopes: list[Slope]) -> TIN:
+def build_patch(tin: TIN, pad: Pad, slopes: list[Slope]) -> TIN:
     """Return pad and slopes as one surface."""
     tolerance = measure_tolerance(tin.points)
-    rims = [rim for slope in slopes for rim in slope.find_rim(pad, tolerance)]
-    edge = _insert(pad, level, rims, tolerance)
+    rims = [rim for slope in slopes for rim in slope.find_rim(pad.polygon, tolerance)]
+    edge = _insert(pad, rims, tolerance)
     rings = _trace_outline(edge, rims, slopes)
     breaks = [line for slope in slopes for line in slope.find_breaks()]
     ends = np.concatenate([edge, *rims])
@@ -194,25 +199,27 @@ def build_patch(tin: TIN, pad: Any, level: float, slopes: list[Slope]) -> TIN:
     )
 
 
-def _insert(pad: Any, level: float, rims: list[Float64Array], tolerance: float) -> Float64Array:
+def _insert(pad: Pad, rims: list[Float64Array], tolerance: float) -> Float64Array:
     """Return the pad's edge with the ends of daylight lines, which are moved onto it."""
     import shapely
 
-    ring = shapely.get_coordinates(pad.exterior)
-    stations = {float(pad.exterior.project(shapely.Point(xy))): xy for xy in ring[:-1]}
+    exterior = pad.polygon.exterior
+    ring = shapely.get_coordinates(exterior)
+    stations = {float(exterior.project(shapely.Point(xy))): xy for xy in ring[:-1]}
     for rim in rims:
         for end in (0, -1):
             here = shapely.Point(rim[end, :2])
-            if pad.exterior.distance(here) > tolerance:
+            if exterior.distance(here) > tolerance:
                 continue
-            station = float(pad.exterior.project(here))
+            station = float(exterior.project(here))
             near = [one for one in stations if abs(one - station) <= tolerance]
-            if not near and abs(station - pad.exterior.length) <= tolerance:
+            if not near and abs(station - exterior.length) <= tolerance:
                 near = [0.0]
-            rim[end] = [*stations.setdefault(near[0] if near else station, rim[end, :2]), level]
+            place = stations.setdefault(near[0] if near else station, rim[end, :2].copy())
+            rim[end] = [*place, *pad.measure_heights(place[None])]
     path = np.array([stations[one] for one in sorted(stations)])
     closed = np.vstack([path, path[:1]])
-    return np.column_stack([closed, np.full(len(closed), level)])
+    return np.column_stack([closed, pad.measure_heights(closed)])
 
 
 def _trace_outline(

@@ -16,6 +16,7 @@ from .seams import measure_tolerance
 
 if TYPE_CHECKING:
     from ....base.arrays import BoolArray, Float64Array, Int32Array, Int64Array
+    from .pads import Pad
 
 _MARGIN = 1.01
 """Slopes are made so much longer than they can be: at their end there is no daylight."""
@@ -67,22 +68,24 @@ class Slope(NamedTuple):
         return [shapely.get_coordinates(one, include_z=True) for one in shapely.get_parts(merged)]
 
 
-def find_slope(tin: TIN, area: Any, pad: Any, level: float, rate: float, reach: float) -> Slope:
+def find_slope(tin: TIN, area: Any, work: Pad, rate: float, reach: float) -> Slope:
     """Follow a slope from the pad until daylight, at most as far as the ground's relief needs.
 
-    ``tin`` is the ground, without a CRS, and ``area`` what it covers; ``level`` is that of the pad,
-    ``rate`` the rise of the slope for a unit along, negative over a fill, and ``reach`` how far it
-    can go on the highest, or lowest, of the ground. Raises PointsError if the ground ends before.
+    ``tin`` is the ground, without a CRS, and ``area`` what it covers; ``rate`` is the rise of the
+    slope for a unit along, negative over a fill, and ``reach`` how far it can go on the highest, or
+    lowest, of the ground. Raises PointsError if the ground ends before.
     """
-    far: float = min(reach, _estimate_reach(tin, pad, level, rate))
+    pad = work.polygon
+    far: float = min(reach, _estimate_reach(tin, work, rate))
     tolerance = measure_tolerance(tin.points)
     while True:
         distances = measure_distances(pad, far * _MARGIN, tolerance)
-        points = distances.points * (1.0, 1.0, rate) + (0.0, 0.0, level)
+        points = distances.points * (1.0, 1.0, rate)
+        points[:, 2] += work.measure_feet(points[:, :2])
         skirt = TIN.from_triangles(points, distances.triangles)
         found = difference(_take_near(tin, skirt), skirt).tin
         is_made = _find_made(found, pad, -np.sign(rate), tolerance)
-        elevations = _measure_elevations(found, distances, level, rate)
+        elevations = _measure_elevations(found, skirt)
         start, end = _find_outline(found, is_made, only_outer=True)
         middles = (found.points[start, :2] + found.points[end, :2]) / 2
         ends = middles[~_lie_on(pad, middles, tolerance)]
@@ -99,12 +102,14 @@ def find_slope(tin: TIN, area: Any, pad: Any, level: float, rate: float, reach: 
         far = float(min(2.0 * far, reach))
 
 
-def _estimate_reach(tin: TIN, pad: Any, level: float, rate: float) -> float:
-    """Return how far a slope goes on ground as far from the level as that at the pad's edge."""
+def _estimate_reach(tin: TIN, work: Pad, rate: float) -> float:
+    """Return how far a slope goes on ground as far from the pad as that at its edge."""
     import shapely
 
-    ground = tin.interpolate(shapely.get_coordinates(shapely.segmentize(pad, pad.length / 64)))
-    rise = np.nanmax((ground - level) * np.sign(rate), initial=0.0)
+    pad = work.polygon
+    places = shapely.get_coordinates(shapely.segmentize(pad, pad.length / 64))
+    above = tin.interpolate(places) - work.measure_heights(places)
+    rise = np.nanmax(above * np.sign(rate), initial=0.0)
     return float(max(2.0 * rise / abs(rate), pad.length / 64))
 
 
@@ -129,14 +134,14 @@ def _find_made(found: TIN, pad: Any, sign: float, tolerance: float) -> BoolArray
     return np.isin(part, part[at_pad])
 
 
-def _measure_elevations(found: TIN, distances: TIN, level: float, rate: float) -> Float64Array:
+def _measure_elevations(found: TIN, skirt: TIN) -> Float64Array:
     """Return the elevations of a slope at the vertices of its difference to the ground."""
     xy = found.points[:, :2]
-    away: Float64Array = distances.interpolate(xy)
-    lost = np.isnan(away)  # by rounding, at an edge
+    elevations: Float64Array = skirt.interpolate(xy)
+    lost = np.isnan(elevations)  # by rounding, at an edge
     if lost.any():
-        away[lost] = distances.interpolate(xy[lost], method="linear", extrapolate="nearest")
-    return level + rate * away
+        elevations[lost] = skirt.interpolate(xy[lost], method="linear", extrapolate="nearest")
+    return elevations
 
 
 def _find_outline(

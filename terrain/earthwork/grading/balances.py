@@ -1,0 +1,285 @@
+"""Balance a pad: the elevation at which what is cut makes what is filled."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from ....base.checks import as_number
+from ....base.errors import PointsError
+from ....base.notes import join_notes
+from ....base.products import product
+from ....base.progress import Progress
+from ....base.results import Table
+from ....base.sentences import height
+from ...surface import find_reference
+from ..volumes import volume
+from .grades import make_patch, require_on_ground, require_slopes
+from .pads import make_pad, read_polygon
+from .pasting import join_surfaces
+from .seams import find_area
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+    from numpy.typing import ArrayLike
+
+    from ....base.georeference import Reference
+    from ....tin import TIN
+    from .pads import Pad
+
+_ENOUGH = 1e-9
+"""Of what is moved: less is in balance."""
+_NEAR = 1e-7
+"""In units of elevations: trials are no nearer to each other."""
+_MOST_TRIALS = 60
+_JUMP = 1e-4
+"""Of what is moved: more that remains is a jump, where slopes begin to reach another part."""
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class BalancedPad:
+    """A pad in balance, made by :func:`tinsmith.balance`.
+
+    Attributes
+    ----------
+    tin : TIN
+        The graded ground, as :func:`tinsmith.grade` makes it.
+    table : Table
+        One row: ``elevation`` of the pad, of one that is not level at its centroid; ``cut``,
+        ``fill`` and their areas; ``fill_from_cut``, what the cut makes; ``balance``, what of that
+        is left, with the surplus; ``sensitivity``, by how much the balance falls for each unit of
+        elevations that the pad is raised; ``haul``, the loose volume of the cut.
+    notes : tuple of str
+        What was assumed.
+
+    Examples
+    --------
+    >>> import tinsmith as ts
+    >>> hill = ts.triangulate([[0, 0, 0], [60, 0, 6], [60, 60, 6], [0, 60, 0]])
+    >>> pad = [[25, 25], [35, 25], [35, 35], [25, 35]]
+    >>> found = ts.balance(hill, pad, cut_slope=2, fill_slope=2)
+    >>> round(found.elevation, 6), found
+    (3.0, <BalancedPad: elevation 3, ...>)
+    """
+
+    tin: TIN
+    table: Table
+    notes: tuple[str, ...] = ()
+
+    @property
+    def elevation(self) -> float:
+        """Elevation of the pad, in the unit of the ground's; at the centroid if it is inclined."""
+        return float(self.table["elevation"][0])
+
+    def with_notes(self, notes: Sequence[str]) -> BalancedPad:
+        """Return the same with further notes in front of its own, those of its table too.
+
+        Examples
+        --------
+        >>> import tinsmith as ts
+        >>> hill = ts.triangulate([[0, 0, 0], [60, 0, 6], [60, 60, 6], [0, 60, 0]])
+        >>> pad = [[25, 25], [35, 25], [35, 35], [25, 35]]
+        >>> found = ts.balance(hill, pad, cut_slope=2, fill_slope=2)
+        >>> found.with_notes(["One row was left out."]).table.notes[0]
+        'One row was left out.'
+        """
+        joined = join_notes(notes, self.notes)
+        return replace(self, table=self.table.with_notes(notes), notes=joined)
+
+    def __repr__(self) -> str:
+        return f"<BalancedPad: elevation {self.elevation:.6g}, {self.tin!r}>"
+
+
+class Trial(NamedTuple):
+    """A pad at some elevation."""
+
+    patch: TIN
+    """Pad and slopes."""
+    volumes: Table
+    balance: float
+    slope: float
+    """By how much the balance falls for each unit that the pad is raised."""
+
+    @property
+    def moved(self) -> float:
+        """What is cut and filled together."""
+        return float(self.volumes["cut"][0] + self.volumes["fill"][0])
+
+
+@product
+def balance(
+    tin: TIN,
+    pad: ArrayLike | Any,
+    *,
+    cut_slope: float,
+    fill_slope: float,
+    gradient: tuple[float, float] | None = None,
+    shrink_factor: float = 1.0,
+    swell_factor: float = 1.0,
+    surplus: float = 0.0,
+    progress: Callable[[float], None] | None = None,
+) -> BalancedPad:
+    """Find the elevation at which a pad's cut makes its fill, and grade it into the ground.
+
+    Parameters
+    ----------
+    tin : TIN
+        The ground.
+    pad : (k, 2) or (k, 3) array, or polygon
+        Ring of the pad's edge, as of :func:`tinsmith.grade`; its elevations do not count.
+    cut_slope, fill_slope : float
+        Side slopes, horizontal over vertical, as of :func:`tinsmith.grade`.
+    gradient : tuple of two floats, optional
+        Rise of the pad to the east and to the north, vertical over horizontal, as of
+        :func:`tinsmith.grade`: its elevation is sought at the centroid. Default level.
+    shrink_factor : float, optional
+        Volume of compacted fill that a volume of cut makes: 0.9 where a tenth is lost. Default 1.
+    swell_factor : float, optional
+        Loose volume to haul of a volume of cut, such as 1.25. It does not count in the balance.
+        Default 1.
+    surplus : float, optional
+        Volume of fill that comes from elsewhere, as from parts of the site whose elevations are
+        fixed, in CRS units cubed; negative if it is needed there. Default 0.
+    progress : callable, optional
+        Called with the fraction done, ascending to 1.0. What it raises ends the call.
+
+    Returns
+    -------
+    BalancedPad
+        The graded TIN, and a table of elevation, volumes and sensitivity.
+
+    Raises
+    ------
+    OptionError, LinesError, CrsError
+        As :func:`tinsmith.grade`; if a factor is no number above 0.
+    PointsError
+        If the pad lies off the ground, or the ground ends before slopes meet it at every elevation
+        that could balance; if none does, since the balance jumps where slopes begin to reach
+        another part of the ground.
+
+    Notes
+    -----
+    If pad and slopes are raised, the cut falls by its area, and the fill grows by its own: so the
+    balance falls, and its derivative is known exactly. Newton's method in a bracket takes some five
+    trials, each of which makes and measures the slopes anew, until the balance is 1e-9 of what is
+    moved, or trials are 1e-7 of a unit apart.
+
+    Examples
+    --------
+    >>> import tinsmith as ts
+    >>> hill = ts.triangulate([[0, 0, 0], [60, 0, 6], [60, 60, 6], [0, 60, 0]])
+    >>> pad = [[25, 25], [35, 25], [35, 35], [25, 35]]
+    >>> found = ts.balance(hill, pad, cut_slope=2, fill_slope=2, shrink_factor=0.8)
+    >>> found.elevation < 3.0, abs(found.table["balance"][0]) < 1e-6
+    (True, True)
+    """
+    done = Progress(progress)
+    reference = find_reference(tin, "Slopes")
+    slopes = require_slopes(cut_slope, fill_slope)
+    shrink = as_number("shrink_factor", shrink_factor, "a factor", above=0)
+    swell = as_number("swell_factor", swell_factor, "a factor", above=0)
+    extra = as_number("surplus", surplus)
+    polygon, _ = read_polygon(pad)
+    start = make_pad(polygon, 0.0, gradient, reference.up, *slopes)
+    area = find_area(tin)
+    require_on_ground(area, polygon)
+    start = start._replace(level=_find_mean(tin, start))
+
+    def attempt(level: float) -> Trial:
+        at = start._replace(level=level)
+        patch = make_patch(tin, at, slopes, reference.up, area, Progress(None))
+        table = volume(tin, patch)
+        cut, fill = float(table["cut"][0]), float(table["fill"][0])
+        areas = shrink * float(table["cut_area"][0]) + float(table["fill_area"][0])
+        areas += float(table["unchanged_area"][0])  # of which any rise makes fill
+        return Trial(patch, table, cut * shrink + extra - fill, areas * reference.up)
+
+    trying = Progress(done.stage(0.0, 0.7))
+    level, found = _find_root(attempt, start.level, float(polygon.area) * reference.up, trying)
+    graded = join_surfaces(tin, found.patch, reference, area, "daylight")
+    table = _make_table(level, found, (shrink, swell), reference)
+    done.end()
+    return BalancedPad(graded, table, tuple(table.notes))
+
+
+def _find_mean(tin: TIN, pad: Pad) -> float:
+    """Return the mean elevation of the ground at the edge of a pad, above its plane at level 0."""
+    import shapely
+
+    places = shapely.get_coordinates(shapely.segmentize(pad.polygon, pad.polygon.length / 64))
+    return float(np.nanmean(tin.interpolate(places) - pad.measure_heights(places)))
+
+
+def _find_root(
+    attempt: Callable[[float], Trial], level: float, area: float, done: Progress
+) -> tuple[float, Trial]:
+    """Return the elevation at which a balance that falls is 0, and the trial there.
+
+    ``area`` of the pad is the least by which it falls. Raises PointsError if there is none.
+    """
+    low, high = -np.inf, np.inf  # balances above and below 0
+    found, at = attempt(level), level
+    lost: PointsError | None = None
+    best = (abs(found.balance), at, found)
+    for number in range(_MOST_TRIALS):
+        done(1.0 - 0.5**number)
+        if abs(found.balance) <= _ENOUGH * found.moved:
+            break
+        low, high = (at, high) if found.balance > 0 else (low, at)
+        level = at + found.balance / max(found.slope, 0.5 * area)
+        if not low < level < high:
+            level = 0.5 * (low + high)
+        while True:
+            if abs(level - at) <= _NEAR or high - low <= _NEAR:
+                return _accept(best, low, high, lost)
+            try:
+                found, at = attempt(level), level
+                break
+            except PointsError as error:  # the ground ends before the slopes do: not so far
+                lost = error
+                level = 0.5 * (level + at)
+        if abs(found.balance) < best[0]:
+            best = (abs(found.balance), at, found)
+    return _accept(best, low, high, lost)
+
+
+def _accept(
+    best: tuple[float, float, Trial], low: float, high: float, lost: PointsError | None
+) -> tuple[float, Trial]:
+    """Return the best trial, if it is in balance but for what trials are apart."""
+    rest, level, found = best
+    if rest <= max(_JUMP * found.moved, 2.0 * _NEAR * found.slope):
+        return level, found
+    if lost is not None and not (np.isfinite(low) and np.isfinite(high)):
+        raise PointsError(f"No elevation that the ground allows is in balance: {lost}") from lost
+    raise PointsError(
+        f"No elevation is in balance: at {height(level)} {rest:.6g} cubic units remain, where the "
+        "slopes begin to reach another part of the ground."
+    )
+
+
+def _make_table(
+    level: float, found: Trial, factors: tuple[float, float], reference: Reference
+) -> Table:
+    shrink, swell = factors
+    volumes, units = found.volumes, reference.units
+    cut = float(volumes["cut"][0])
+    columns = {"elevation": level}
+    columns |= {name: float(volumes[name][0]) for name in ("cut", "fill", "cut_area", "fill_area")}
+    columns |= {"fill_from_cut": cut * shrink, "balance": found.balance}
+    columns |= {"sensitivity": found.slope, "haul": cut * swell}
+    volume_unit, unit = units.volume, reference.elevation_unit
+    per = f"{volume_unit}/{unit.symbol}" if volume_unit and unit is not None else None
+    table_units: dict[str, Any] = dict.fromkeys(("cut", "fill", "fill_from_cut"), volume_unit)
+    table_units |= dict.fromkeys(("balance", "haul"), volume_unit)
+    table_units |= dict.fromkeys(("cut_area", "fill_area"), units.area)
+    table_units |= {"elevation": unit, "sensitivity": per}
+    return Table(
+        {name: np.array([value]) for name, value in columns.items()},
+        units=table_units,
+        name="balance",
+        notes=list(volumes.notes),
+    )
