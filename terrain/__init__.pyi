@@ -23,6 +23,7 @@ from .corridors import section_volumes as section_volumes
 from .drawing.models import lift as lift
 from .earthwork import Difference as Difference
 from .earthwork import ErrorModel as ErrorModel
+from .earthwork import clip as clip
 from .earthwork import difference as difference
 from .earthwork import stage_storage as stage_storage
 from .earthwork import volume as volume

@@ -103,6 +103,7 @@ def write_files():
     ts.write(make_lines([[-20, -10], [20, 0]], name="kerbs"), "plan.gpkg")
     ts.write(make_lines([[-20, 10], [20, 15]], name="soft"), "soft.shp")
     ts.write(make_rings((0, 0, 70)), "site.geojson")
+    ts.write(make_rings((-20, 0, 15), (20, 5, 12)), "parcels.geojson")
     ts.write(make_rings((-40, -30, 3)), "shafts.gpkg")
     ts.write(make_rings((40, 30, 4)), "cars.shp")
     ts.write(make_rings((-40, 30, 5)), "ponds.gpkg")

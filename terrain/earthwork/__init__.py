@@ -1,5 +1,6 @@
 """Volumes and differences of surfaces, in closed form."""
 
+from .clipping import clip
 from .differences import Difference, difference
 from .error_models import ErrorModel
 from .planes import as_plane, level_surface
@@ -12,6 +13,7 @@ __all__ = [
     "ErrorModel",
     "as_plane",
     "as_regions",
+    "clip",
     "difference",
     "level_surface",
     "stage_storage",

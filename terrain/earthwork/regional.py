@@ -45,8 +45,8 @@ def subtract_in_regions(
     Raises PointsError if no region holds both surfaces, or as :func:`subtract`.
     """
     assert measured.parts is not None
-    found, regions = [], _split(measured.parts, len(measured.names))
-    shares = _split(measured.pieces, len(measured.names))
+    found, regions = [], split_pieces(measured.parts, len(measured.names))
+    shares = split_pieces(measured.pieces, len(measured.names))
     for name, region, share, sums in zip(
         measured.names, regions, shares, measured.sums, strict=True
     ):
@@ -59,7 +59,7 @@ def subtract_in_regions(
         raise PointsError("The regions lie outside of what both surfaces cover: they hold nothing.")
     if len(measured.names) == 1:
         return found[0][0].tin, found[0][1], (found[0][0],)
-    whole = _unite(regions)
+    whole = unite_regions(regions)
     pieces = cut_pieces(first, Pieces(whole, np.zeros(len(whole.triangles), np.int32)))
     sums_of_all = _sum(pieces, second)
     within = _hold_too(holds, [whole])
@@ -94,7 +94,7 @@ def _join_offsets(levels: Sequence[Int64Array]) -> Int64Array:
     return np.concatenate([[0], np.cumsum(np.concatenate([np.diff(one) for one in levels]))])
 
 
-def _split(pieces: Pieces, count: int) -> list[Surface]:
+def split_pieces(pieces: Pieces, count: int) -> list[Surface]:
     """Return the surface of each group."""
     order = np.argsort(pieces.groups, kind="stable")
     ends = np.cumsum(np.bincount(pieces.groups, minlength=count))[:-1]
@@ -110,7 +110,7 @@ def _hold_too(holds: Callable[[Any], Any], regions: Sequence[Surface]) -> Callab
     return lambda xy: holds(xy) & np.any([mesh.locate(xy) >= 0 for mesh in meshes], axis=0)
 
 
-def _unite(regions: Sequence[Surface]) -> Surface:
+def unite_regions(regions: Sequence[Surface]) -> Surface:
     """Return triangles of all that is in any region.
 
     Raises LinesError if borders cross in ways that coordinates cannot tell apart.

@@ -22,24 +22,26 @@ _NAMES = ("name", "region", "id", "label")
 """Columns that name a region, in this order."""
 
 
-def as_regions(regions: Any, crs: CRS | None) -> tuple[list[str], Pieces, tuple[str, ...]]:
+def as_regions(
+    regions: Any, crs: CRS | None, *, option: str = "regions", noun: str = "region"
+) -> tuple[list[str], Pieces, tuple[str, ...]]:
     """Return the names of regions, their triangles at elevation 0, and what was assumed.
 
     Regions are a mapping of names to polygons, a sequence of polygons, Features, or an object with
     polygons; a polygon is a ring, a sequence of rings, or an object with a ``__geo_interface__``.
-    ``crs`` is that of the surfaces.
+    ``crs`` is that of the surfaces; ``option`` and ``noun`` are words for them in sentences.
 
     Raises CrsError if the regions name another CRS, or that of the surfaces is not known;
     LinesError if one is no sound polygon; OptionError if there is none.
     """
     is_plain = not hasattr(regions, "crs")
     theirs = CRS.of(getattr(regions, "crs", None))
-    notes = require_same_crs(theirs, crs, "the regions", is_plain=is_plain)
+    notes = require_same_crs(theirs, crs, f"the {option}", is_plain=is_plain)
     notes += tuple(regions.notes) if isinstance(regions, Features) else ()
-    named = list(_name_regions(regions))
+    named = list(_name_regions(regions, option))
     if not named:
-        raise OptionError("regions", 0, allowed="1 or more", what="number of regions")
-    parts = [_triangulate(name, shape) for name, shape in named]
+        raise OptionError(option, 0, allowed="1 or more", what=f"number of {option}")
+    parts = [_triangulate(f"{noun} '{name}'", shape) for name, shape in named]
     first = np.cumsum([0, *(len(points) for points, _ in parts)])[:-1]
     triangles = [corners + start for (_, corners), start in zip(parts, first, strict=True)]
     groups = np.repeat(np.arange(len(parts)), [len(corners) for corners in triangles])
@@ -50,9 +52,9 @@ def as_regions(regions: Any, crs: CRS | None) -> tuple[list[str], Pieces, tuple[
     return [name for name, _ in named], Pieces(surface, groups.astype(np.int32)), notes
 
 
-def _name_regions(regions: Any) -> Iterator[tuple[str, Any]]:
+def _name_regions(regions: Any, option: str) -> Iterator[tuple[str, Any]]:
     if isinstance(regions, Features):
-        yield from _take_features(regions)
+        yield from _take_features(regions, option)
     elif isinstance(regions, Mapping) and "type" not in regions:
         yield from ((str(name), shape) for name, shape in regions.items())
     elif isinstance(given := getattr(regions, "__geo_interface__", regions), Mapping):
@@ -60,7 +62,7 @@ def _name_regions(regions: Any) -> Iterator[tuple[str, Any]]:
     elif isinstance(regions, Sequence | np.ndarray) or hasattr(regions, "__iter__"):
         yield from ((str(number), shape) for number, shape in enumerate(regions, start=1))
     else:
-        raise OptionError("regions", type(regions).__name__, allowed="polygons")
+        raise OptionError(option, type(regions).__name__, allowed="polygons")
 
 
 def _name_features(given: Mapping[str, Any]) -> Iterator[tuple[str, Any]]:
@@ -77,9 +79,9 @@ def _find_name(properties: Mapping[str, Any], number: int) -> str:
     return str(found[0]) if found else str(number)
 
 
-def _take_features(features: Features) -> Iterator[tuple[str, Any]]:
+def _take_features(features: Features, option: str) -> Iterator[tuple[str, Any]]:
     if features.kind != "polygons":
-        raise OptionError("regions", f"{features.kind}", allowed="polygons")
+        raise OptionError(option, f"{features.kind}", allowed="polygons")
     rings, spans, *multi = features.offsets
     for level in multi:
         spans = spans[level]
@@ -92,9 +94,8 @@ def _take_features(features: Features) -> Iterator[tuple[str, Any]]:
         yield _find_name(properties, number + 1), shape
 
 
-def _triangulate(name: str, shape: Any) -> tuple[Float64Array, Int64Array]:
+def _triangulate(what: str, shape: Any) -> tuple[Float64Array, Int64Array]:
     """Triangulate a polygon; inside is what an odd number of its rings holds."""
-    what = f"region '{name}'"
     rings = [ring[:, :2] for polygon in gather_rings_of_regions([shape], what) for ring in polygon]
     if not rings:
         raise LinesError(f"The {what} has no area.")

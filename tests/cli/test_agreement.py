@@ -496,6 +496,7 @@ def compare_page(folder, figures):
 AGREEMENTS = {
     "build": [compare_meshes("build", "b.ply", "TIN", "--report", "b.json")],
     "check": [compare_check],
+    "clip": [compare_meshes("clip", "c.ply", "Clipped", "--by", "ring.geojson")],
     "compare": [compare_algorithms],
     "contours": [compare_contours],
     "convert": [compare_converted],

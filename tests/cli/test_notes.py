@@ -16,6 +16,7 @@ SLOPES = ("--cut-slope", 2, "--fill-slope", 2)
 COMMANDS = {
     "build": ["-o", "out.gpkg"],
     "check": [],
+    "clip": ["--by", "ring.geojson", "-o", "out.ply"],
     "compare": ["--sample", 50],
     "contours": ["--interval", 1, "-o", "out.gpkg"],
     "convert": ["-o", "out.xyz"],

@@ -123,6 +123,7 @@ COMMANDS = {
     "simplify": ("simplify SITE --tolerance 0.1", "TIN"),
     "refine": ("refine SITE --min-angle 20", "TIN"),
     "paste": ("paste SITE PATCH", "TIN"),
+    "clip": ("clip SITE --by RING", "TIN"),
     "convert": ("convert SITE", "TIN"),
 }
 OTHERS = {
@@ -148,6 +149,7 @@ def files(tmp_path_factory):
     other[:, 2] += np.sin(other[:, 0] / 9)
     patch = ts.triangulate(add_height(RING, 330), crs=HILL.crs, elevation_unit="m")
     line = ts.Features.of_lines(LINE, [0, 2], columns={"name": ["a"]}, crs=HILL.crs)
+    ring = ts.Features.of_polygons([*RING, RING[0]], [0, 5], [0, 1], crs=HILL.crs)
     made = {
         "SITE": ts.write(HILL, folder / "site.gpkg"),
         "OTHER": ts.write(
@@ -155,6 +157,7 @@ def files(tmp_path_factory):
         ),
         "PATCH": ts.write(patch, folder / "patch.gpkg"),
         "LINE": ts.write(line, folder / "line.gpkg"),
+        "RING": ts.write(ring, folder / "ring.gpkg"),
     }
     places = {"PLACE": PLACE, "END": LINE[1]}
     return {name: [str(path)] for name, path in made.items()} | {

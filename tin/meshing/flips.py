@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from ...base.sentences import counted
-from ..triangulation.illegal_edges import mark_illegal_edges
+from ..triangulation import mark_illegal_edges
 
 if TYPE_CHECKING:
     from ..surface import TIN

@@ -18,12 +18,12 @@ from ...base.products import product
 from ...base.progress import Progress
 from ...base.sentences import counted
 from .. import _kernel, topology
-from ..building.version import Version
-from ..constraints.pslg import build_mesh_of_growth, find_lines_in
+from ..building import Version
+from ..constraints import build_mesh_of_growth, find_lines_in
 from ..report import Unmended
 from ..surface import TIN
 from ..triangulation import Triangulation
-from ..validation.threads import thread_count
+from ..validation import thread_count
 from .flips import describe_flips
 from .shape_quality import measure_smallest_angles
 from .surface_pslg import gather_pslg, list_rings

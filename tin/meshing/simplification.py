@@ -16,13 +16,13 @@ from ...base.errors import LinesError, OptionError, PointsError, choice
 from ...base.policies import SimplificationHold
 from ...base.progress import Progress
 from .. import _kernel, topology
-from ..building.version import Version
-from ..constraints.pslg import build_mesh_of_growth, find_lines_in
+from ..building import Version
+from ..constraints import build_mesh_of_growth, find_lines_in
 from ..editing import account_for_edits, account_for_removed, renumber_vertices
 from ..report import Simplification
 from ..surface import TIN
 from ..triangulation import Triangulation
-from ..validation.threads import thread_count
+from ..validation import thread_count
 from ..validation.vertices import as_vertex_array
 from .flips import count_flips, describe_flips
 from .surface_difference import SurfaceMeter

@@ -6,10 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..constraints.clipping import BOUNDARY
-from ..constraints.constraint_table import ConstraintTable
-from ..constraints.polylines import Polylines
-from ..constraints.pslg import Clip, Pslg
+from ..constraints import BOUNDARY, Clip, ConstraintTable, Polylines, Pslg
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -1,10 +1,11 @@
-"""Paste a TIN into another one."""
+"""Put TINs together, or keep a part of one."""
 
 from __future__ import annotations
 
 from typing import Any
 
-from ..inputs import Surface
+from ..inputs import POLYGONS, Lines, Surface
+from ..options import switch
 from .base import CommandAlgorithm, Run
 
 
@@ -34,3 +35,30 @@ class PasteAlgorithm(CommandAlgorithm):
         """Return all arguments but the outputs."""
         base, patch = self.surfaces
         return [self.verb, *run.list_tin(base), *run.list_tin(patch), *run.list_extra()]
+
+
+class ClipAlgorithm(CommandAlgorithm):
+    """Keep the part of a TIN inside polygons, or outside them."""
+
+    verb = "clip"
+    title = "Clip TIN"
+    summary = "Keeps the part of a TIN inside polygons, or outside them, without changing it."
+    explanation = (
+        "Triangles inside stay as they are, those that a polygon crosses are divided along it; "
+        "breaklines end there. The boundary of Build TIN triangulates the points inside anew, so "
+        "that the surface changes along it."
+    )
+    surfaces = (Surface(),)
+    lines = (
+        Lines("POLYGONS", "Polygons", "--by", "What is clipped by.", kind=POLYGONS, required=True),
+    )
+    options = (switch("OUTSIDE", "Keep what is outside", "--outside", "In place of the inside."),)
+
+    def add_outputs(self) -> None:
+        """Add the TIN, and counts for models."""
+        self.add_mesh_output("Clipped TIN")
+        self.add_counts()
+
+    def make(self, run: Run) -> dict[str, Any]:
+        """Clip."""
+        return self.make_mesh(run, "Clipped TIN")

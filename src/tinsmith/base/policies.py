@@ -119,6 +119,9 @@ CurvatureKind: TypeAlias = Literal["profile", "plan", "tangential", "mean", "gau
 OutsidePolicy: TypeAlias = Literal["error", "nan", "cut"]
 """What becomes of parts of features where there is no surface."""
 
+ClippedPart: TypeAlias = Literal["inside", "outside"]
+"""Which part of a surface clipping keeps."""
+
 DrawingContent: TypeAlias = Literal["surface", "source", "points"]
 """What is read of a drawing: triangles, the points and lines that make a surface, or points."""
 

@@ -15,7 +15,7 @@ from ....base.products import product
 from ....base.progress import Progress
 from ....base.sentences import coordinate
 from ....tin import Breakline, Survey, triangulate
-from ....tin.building.attributes import join_columns
+from ....tin.building import join_columns
 from ....tin.constraints.clipping import in_rings
 from ....tin.topology import edge_keys, mark_corners
 from ....tin.triangulation.illegal_edges import mark_illegal_edges
