@@ -1,4 +1,4 @@
-"""Make the picture of clip.md.
+"""Make the pictures of clip.md.
 
 Run ``python docs/make_clip.py [FOLDER]``; needs the extra "plot".
 """
@@ -53,6 +53,7 @@ def main(folder: Path = HERE) -> None:
         fontsize=11,
     )
     figure.savefig(folder / "clip.png", dpi=110, metadata=NO_VERSION)
+    draw_seam(folder / "merge.png")
 
 
 def draw(axes: Any, site: ts.TIN, part: ts.TIN) -> None:
@@ -69,6 +70,43 @@ def draw(axes: Any, site: ts.TIN, part: ts.TIN) -> None:
     axes.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), aspect="equal", xticks=[], yticks=[])
     for spine in axes.spines.values():
         spine.set_color(EDGES)
+
+
+def draw_seam(path: Path) -> None:
+    """Draw two sheets across their seam: joined, and blended in a strip."""
+    upper, lower = (make_sheet(*sheet) for sheet in ((0.0, 60.0, 0.5, 1), (40.0, 60.0, 0.0, 2)))
+    along = np.linspace(30.0, 80.0, 2001)
+    xy = np.column_stack([along, np.full_like(along, 20.0)])
+    figure = Figure(figsize=(12.0, 4.2), layout="constrained")
+    panels = ((0.0, "joined"), (12.0, "blended over 12 m"))
+    for axes, (width, title) in zip(figure.subplots(1, 2, sharey=True), panels, strict=True):
+        merged = ts.merge([upper, lower], blend=width)
+        axes.axvspan(60.0 - width, 60.0, color=OTHER, alpha=0.6, linewidth=0)
+        axes.axvline(60.0, color=EDGES, linewidth=0.8)
+        for tin, style, label in (
+            (upper, {"color": EDGES, "linestyle": "--"}, "upper surface"),
+            (lower, {"color": EDGES, "linestyle": ":"}, "lower surface"),
+            (merged, {"color": BORDER, "linewidth": 2.0}, "merged"),
+        ):
+            axes.plot(along, tin.interpolate(xy), label=label, **style)
+        axes.set_title(title, color=INK, fontsize=12)
+        axes.set_xlabel("easting, m", color=INK)
+        axes.tick_params(colors=INK)
+        for side in ("top", "right"):
+            axes.spines[side].set_visible(False)
+    figure.axes[0].set_ylabel("elevation, m", color=INK)
+    figure.axes[0].legend(frameon=False, labelcolor=INK)
+    figure.savefig(path, dpi=110, metadata=NO_VERSION)
+
+
+def make_sheet(west: float, width: float, z: float, seed: int) -> ts.TIN:
+    """Return ground of some width, 40 m north to south, raised by ``z``."""
+    rng = np.random.default_rng(seed)
+    x, y = np.meshgrid(np.arange(0.0, width + 1, 4.0), np.arange(0.0, 41.0, 4.0))
+    inner = (x > 0) & (x < width) & (y > 0) & (y < 40)
+    x, y = (axis + rng.uniform(-1.5, 1.5, x.shape) * inner for axis in (x, y))
+    heights = 100 + z + 1.2 * np.sin((x + west) / 9) + 0.5 * np.cos(y / 5)
+    return ts.triangulate(np.column_stack([(x + west).ravel(), y.ravel(), heights.ravel()]))
 
 
 if __name__ == "__main__":

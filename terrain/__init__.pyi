@@ -30,6 +30,7 @@ from .earthwork import volume as volume
 from .earthwork.grading import BalancedPad as BalancedPad
 from .earthwork.grading import balance as balance
 from .earthwork.grading import grade as grade
+from .earthwork.grading import merge as merge
 from .earthwork.grading import paste as paste
 from .gridding import height_above as height_above
 from .gridding import rasterize as rasterize

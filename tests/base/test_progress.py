@@ -74,6 +74,7 @@ CALLS = {
     "grade": (lambda _, tins, **to: ts.grade(tins[0], PAD, 10.0, **SLOPES, **to), 6),
     "simplify": (lambda _, tins, **to: ts.simplify(tins[1], tolerance=1.0, **to), 4),
     "viewshed": (lambda _, tins, **to: ts.viewshed(cut_corner(tins[1]), EYE, **to), 3),
+    "merge": (lambda p, tins, **to: ts.merge([cut_middle(p), *tins[:1]], **to), 1),
     "clip": (lambda _, tins, **to: ts.clip(tins[0], [RING], **to), 5),
     "paste": (lambda p, tins, **to: ts.paste(tins[0], cut_middle(p), **to), 5),
 }

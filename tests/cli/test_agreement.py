@@ -514,6 +514,7 @@ AGREEMENTS = {
     "info": [compare_info],
     "inspect": [compare_inspection],
     "interpolate": [compare_interpolated],
+    "merge": [compare_meshes("merge", "m.ply", "Merged", "flat.csv", "--blend", 3)],
     "paste": [compare_meshes("paste", "p.ply", "Pasted", "flat.csv")],
     "plan": [compare_plan],
     "profile": [compare_profiles, compare_sections],

@@ -28,6 +28,7 @@ COMMANDS = {
     "simplify": "simplify TIN --tolerance 0.1 -o OUT.ply",
     "grade": "grade TIN --pad PAD --elevation 305 --cut-slope 1 --fill-slope 1 -o OUT.ply",
     "paste": "paste TIN PATCH -o OUT.ply",
+    "merge": "merge PATCH TIN -o OUT.ply",
     "clip": "clip TIN --by PAD -o OUT.ply",
     "ground": "ground POINTS -o OUT.las",
     "edit": "edit TIN EDITS -o OUT.ply",

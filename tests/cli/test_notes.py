@@ -30,6 +30,7 @@ COMMANDS = {
     "info": [],
     "inspect": ["-o", "out.csv"],
     "interpolate": ["--at", "places.csv", "-o", "out.csv"],
+    "merge": ["flat.csv", "-o", "out.ply"],
     "paste": ["flat.csv", "-o", "out.ply"],
     "plan": ["-o", "out.pdf"],
     "profile": ["--from", 700_003, 4_000_003, "--to", 700_090, 4_000_080, "-o", "out.csv"],

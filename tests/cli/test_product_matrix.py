@@ -123,6 +123,7 @@ COMMANDS = {
     "simplify": ("simplify SITE --tolerance 0.1", "TIN"),
     "refine": ("refine SITE --min-angle 20", "TIN"),
     "paste": ("paste SITE PATCH", "TIN"),
+    "merge": ("merge PATCH SITE --blend 2", "TIN"),
     "clip": ("clip SITE --by RING", "TIN"),
     "convert": ("convert SITE", "TIN"),
 }

@@ -35,6 +35,7 @@ CALLS = {
     "simplify": lambda g, to: ts.simplify(g["tin"], tolerance=0.3, **to),
     "viewshed": lambda g, to: ts.viewshed(g["tin"], g["points"][0][:2], eye_height=1, **to),
     "paste": lambda g, to: ts.paste(g["tin"], g["patch"], **to),
+    "merge": lambda g, to: ts.merge([g["patch"], g["tin"]], blend=g["size"] / 20, **to),
     "clip": lambda g, to: ts.clip(g["tin"], [g["ring"]], **to),
     "mend_flats": lambda g, to: ts.mend_flats(g["flat"], **to),
     "rasterize": lambda g, to: ts.rasterize(g["tin"], spacing=g["size"] / 30, **to),

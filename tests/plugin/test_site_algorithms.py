@@ -65,6 +65,8 @@ def test_results_are_those_of_the_package(tmp_path):
         "graded": qgis.job("grade", INPUT="ground", PAD="pad",
                            OUTPUT=tmp_path / "graded.ply", **slopes),
         "pasted": qgis.job("paste", BASE="ground", PATCH="patch", OUTPUT=tmp_path / "pasted.nc"),
+        "merged": qgis.job("merge", FIRST="patch", SECOND="ground", BLEND=2.5,
+                           OUTPUT=tmp_path / "merged.ply"),
         "clipped": qgis.job("clip", INPUT="ground", POLYGONS="pad", OUTPUT=tmp_path / "part.ply"),
         "suspects": qgis.job("inspect", INPUT="cloud", OUTPUT=tmp_path / "suspects.gpkg"),
         "alone": qgis.job("paste", BASE="ground", OUTPUT=tmp_path / "no.ply"),
@@ -149,6 +151,8 @@ def check_earthwork(told, tin, folder):
     assert told["pasted"]["outputs"]["TRIANGLES"] == len(pasted.triangles)
     said = [text for kind, text in told["pasted"]["log"] if kind == "info"]
     assert any("Along the seam" in text for text in said)
+    merged = ts.merge([ts.triangulate(PATCH, crs=qgis.UTM), tin], blend=2.5)
+    qgis.assert_same_tin(ts.read(folder / "merged.ply"), merged)
     clipped = ts.clip(tin, [PAD])
     qgis.assert_same_tin(ts.read(folder / "part.ply"), clipped)
     assert told["clipped"]["layers"]["Clipped TIN"]["faces"] == len(clipped.triangles)

@@ -59,6 +59,7 @@ RESULTS = {
     "viewshed": lambda tin: ts.viewshed(tin, PLACE, eye_height=2.0),
     "volume": lambda tin: ts.volume(tin, base=318.0),
     # surfaces
+    "merge": lambda tin: ts.merge([ts.triangulate(add_height(RING, 330), crs=HILL.crs), tin]),
     "clip": lambda tin: ts.clip(tin, [RING]),
     "mend_flats": ts.mend_flats,
     "paste": lambda tin: ts.paste(tin, ts.triangulate(add_height(RING, 330), crs=HILL.crs)),

@@ -11,7 +11,7 @@ from .grade import GradeAlgorithm
 from .ground import GroundAlgorithm
 from .inspect import InspectAlgorithm
 from .install import InstallAlgorithm
-from .paste import ClipAlgorithm, PasteAlgorithm
+from .paste import ClipAlgorithm, MergeAlgorithm, PasteAlgorithm
 from .profile import ProfileAlgorithm
 from .raster import RasterAlgorithm
 from .refine import RefineAlgorithm
@@ -37,6 +37,7 @@ ALGORITHMS = (
     SightAlgorithm,
     GradeAlgorithm,
     PasteAlgorithm,
+    MergeAlgorithm,
     ClipAlgorithm,
     RasterAlgorithm,
     RefineAlgorithm,

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from ..inputs import POLYGONS, Lines, Surface
-from ..options import switch
+from ..options import number, switch
 from .base import CommandAlgorithm, Run
 
 
@@ -35,6 +35,42 @@ class PasteAlgorithm(CommandAlgorithm):
         """Return all arguments but the outputs."""
         base, patch = self.surfaces
         return [self.verb, *run.list_tin(base), *run.list_tin(patch), *run.list_extra()]
+
+
+class MergeAlgorithm(CommandAlgorithm):
+    """Put TINs together to one."""
+
+    verb = "merge"
+    title = "Merge TINs"
+    summary = "Puts TINs that lie beside each other, or over each other, together to one."
+    explanation = (
+        "Where they lie over each other the first counts. In the strip along its boundary the "
+        "elevations go over into those of the next. The log tells how much they overlap, how far "
+        "they are apart along the seam, and of gaps between them, which are left."
+    )
+    surfaces = (
+        Surface("FIRST", "First"),
+        Surface("SECOND", "Second"),
+        Surface("THIRD", "Third", False),
+    )
+    options = (
+        number("BLEND", "Width of the strip", "--blend", "In units of the CRS.", 0.0, least=0.0),
+    )
+
+    def add_outputs(self) -> None:
+        """Add the TIN, and counts for models."""
+        self.add_mesh_output("Merged TIN")
+        self.add_counts()
+
+    def make(self, run: Run) -> dict[str, Any]:
+        """Merge."""
+        return self.make_mesh(run, "Merged TIN")
+
+    def list_inputs(self, run: Run) -> list[str]:
+        """Return all arguments but the outputs."""
+        given = [one for one in self.surfaces if self.found[one.name] is not None]
+        files = [word for one in given for word in run.list_tin(one)]
+        return [self.verb, *files, *run.list_options(self.options), *run.list_extra()]
 
 
 class ClipAlgorithm(CommandAlgorithm):

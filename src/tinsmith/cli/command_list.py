@@ -14,6 +14,7 @@ SECTIONS = {
         "simplify": "Leave out points of a TIN or raster within a tolerance.",
         "grade": "Grade a pad into a TIN, with side slopes to the daylight line.",
         "paste": "Replace a part of one TIN by another.",
+        "merge": "Put TINs beside and over each other together, by priority.",
         "clip": "Keep the part of a TIN inside polygons, or outside.",
         "ground": "Classify ground, other points and low noise of lidar.",
         "edit": "Edit a TIN by a script.",

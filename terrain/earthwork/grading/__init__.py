@@ -2,6 +2,7 @@
 
 from .balances import BalancedPad, balance
 from .grades import grade
+from .merging import merge
 from .pasting import paste
 
-__all__ = ["BalancedPad", "balance", "grade", "paste"]
+__all__ = ["BalancedPad", "balance", "grade", "merge", "paste"]
