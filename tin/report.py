@@ -118,6 +118,8 @@ class Edit(NamedTuple):
 
 
 def _as_plain(value: Any) -> Any:
+    if isinstance(value, dict):
+        return {name: _as_plain(one) for name, one in value.items()}
     return value.tolist() if isinstance(value, np.ndarray | np.generic) else value
 
 

@@ -16,11 +16,11 @@ from ..base.ranges import describe_span, require_degrees
 from ..base.sentences import counted
 from ..base.types import seal
 from . import topology
+from .building import Version
 from .building.assembly import assemble
-from .building.attributes import Attributes, as_columns, as_row_attributes
+from .building.attributes import Attributes, as_columns, as_row_attributes, join_columns
 from .building.moving import move_inputs, move_points, require_move
 from .building.reference import require_crs
-from .building.version import Version
 from .constraints.breaklines import Lines
 from .editing.editable import Editable
 from .editing.session import Origin
@@ -89,7 +89,7 @@ class Surface:
             version,
             crs=self._crs,
             elevation_unit=self._elevation_unit,
-            row_attributes=self._row_attributes,
+            row_attributes=self._gather_row_attributes(),
         )
 
     def snapshot(self) -> Snapshot:
@@ -231,12 +231,23 @@ class Surface:
         array([11, 13, 14])
         """
         version = self._current
-        return Attributes(self._row_attributes, lambda: version.first_rows)
+        return Attributes(self._gather_row_attributes(), lambda: version.first_rows)
 
     @property
     def row_attributes(self) -> Mapping[str, AnyArray]:
-        """Further columns of the input rows; those that edits inserted, behind them, have none."""
-        return dict(self._row_attributes)
+        """Further columns of the input rows; those that edits inserted come behind them."""
+        return dict(self._gather_row_attributes())
+
+    def _gather_row_attributes(self) -> Mapping[str, AnyArray]:
+        """Return the columns of the rows, and of those that were inserted with columns."""
+        edits = self.edits
+        if not any(one.arguments.get("attributes") for one in edits):
+            return self._row_attributes
+        counts = self._keep()._count_inserted()
+        n_own = len(self._current.vertex_of) - sum(counts)
+        own = dict(Attributes(self._row_attributes, lambda: np.arange(n_own)))
+        more = [as_columns(one.arguments.get("attributes") or {}, None) for one in edits]
+        return join_columns([own, *more], [n_own, *counts])
 
     def replace(self, **changes: Any) -> TIN:
         """Return a TIN that differs in some arguments of the constructor; it has no edits.
@@ -746,8 +757,8 @@ class Surface:
             and np.array_equal(mine.constrained, theirs.constrained)
             and one.lines.is_same(two.lines)
             and _have_same_values(
-                Attributes(self._row_attributes, lambda: one.first_rows),
-                Attributes(other._row_attributes, lambda: two.first_rows),
+                Attributes(self._gather_row_attributes(), lambda: one.first_rows),
+                Attributes(other._gather_row_attributes(), lambda: two.first_rows),
             )
         )
 
@@ -1066,7 +1077,7 @@ class TIN(Editable, Surface):
         """
         version, origin = self._settle()
         report = version.report.with_reason(as_rows(rows), choice("why", why, LEFT_OUT))
-        other = self._replace({"report": report})
+        other = self._replace({"report": report, "row_attributes": self._row_attributes})
         other._resume(origin)
         return other
 
@@ -1077,9 +1088,20 @@ class TIN(Editable, Surface):
             given = replace(given, report=replace(given.report, **changes))
         if inputs is not None:
             inputs = replace(inputs, **changes)
-        other = self._replace({"report": replace(version.report, **changes)})
+        told = replace(version.report, **changes)
+        other = self._replace({"report": told, "row_attributes": self._row_attributes})
         other._resume(Origin(inputs, given, origin.edits))
         return other
+
+    def _resume(self, origin: Origin) -> None:
+        super()._resume(origin)
+        if not origin.edits:
+            return
+        given, inputs = origin.given, origin.inputs
+        count = len(inputs.points) if given is None and inputs is not None else 0
+        count = len(given.vertex_of) if given is not None else count
+        columns = self._row_attributes.items()  # those of inserted rows are in the edits
+        self._row_attributes = {name: seal(column[:count]) for name, column in columns}
 
     def _replace(self, changes: dict[str, Any]) -> TIN:
         version = self._current
@@ -1111,12 +1133,12 @@ class TIN(Editable, Surface):
                 vertex_of=self.vertex_of,
                 report=self.report,
                 lines=self.lines,
-                row_attributes=self._row_attributes,
+                row_attributes=self._gather_row_attributes(),
             )
         rows = self._list_rows()
         inputs = inputs.with_sources_of(rows)
         inputs = move_inputs(inputs, function, length=length, crs=system, elevation_unit=unit)
-        attributes = self._row_attributes
+        attributes = self._gather_row_attributes()
         if rows is not None:  # those left after edits
             attributes = dict(Attributes(attributes, lambda: rows))
         return type(self)._of(
@@ -1140,7 +1162,7 @@ class TIN(Editable, Surface):
         return {
             "crs": self._crs,
             "elevation_unit": self._elevation_unit,
-            "row_attributes": self._row_attributes,
+            "row_attributes": self._gather_row_attributes(),
         }
 
     def copy(self) -> Self:

@@ -118,3 +118,78 @@ def test_a_script_may_begin_with_a_byte_order_mark(folder):
     result = CliRunner().invoke(main, ["edit", "points.csv", "script.json", "-o", "out.ply"])
     assert result.exit_code == 0
     assert "Edits       none" in result.stderr
+
+
+TABLE = """op;vertex;easting;northing;elevation;line;name
+insert;;3;3;1;;
+
+remove;4;;;;;
+move;4;1;3;2;;
+set_elevation;0;;;50;;
+add_breakline;;0.5;0.5;1;1;kerb
+add_breakline;;3;1;2;1;
+"""
+
+
+def test_a_table_is_the_script(folder):
+    named = [*SCRIPT[:-1], SCRIPT[-1] | {"name": "kerb"}]
+    assert run(folder, named).exit_code == 0
+    wanted = (folder / "out.ply").read_bytes()
+    (folder / "edits.csv").write_text(TABLE)
+    result = CliRunner().invoke(main, ["edit", "points.csv", "edits.csv", "-o", "table.ply"])
+    assert result.exit_code == 0, result.stderr
+    assert (folder / "table.ply").read_bytes() == wanted
+
+
+def test_rows_one_behind_the_other_are_one_edit(folder):
+    rows = ["op,vertex,x,y,z", "remove,3", "remove,4", "insert,,1,1,1", "insert,,2,2,2"]
+    (folder / "edits.csv").write_text("\n".join(rows))
+    result = CliRunner().invoke(
+        main, ["edit", "points.csv", "edits.csv", "-o", "out.ply", "--report", "report.json"]
+    )
+    assert result.exit_code == 0, result.stderr
+    edits = json.loads((folder / "report.json").read_text())["edits"]
+    assert edits[0]["vertices"] == [3, 4]
+    assert len(edits[1]["points"]) == 2
+
+
+@pytest.mark.parametrize(
+    ("table", "words"),
+    [
+        ("", "no column op"),
+        ("op,colour\nremove,3", "the column 'colour'"),
+        ("op,vertex\nremov,3", "line 2: op is 'remov'"),
+        ("op,vertex\n\nremove,", "line 3: remove needs vertex, and vertex is missing"),
+        ("op,vertex,x\nremove,3,5", "and x is not for it"),
+        ("op,vertex\nremove,three", "vertex is 'three': a whole number is needed"),
+        ("op,vertex\nremove,3,4", "there are 3 values for 2 columns"),
+        ("op,x,y,z\nadd_breakline,1,1,1\nadd_breakline,2,2", "all vertices of a line"),
+        ("op,vertex\nremove,99", "Edit 0 (remove)"),
+    ],
+)
+def test_a_table_that_is_none_is_refused(folder, table, words):
+    (folder / "edits.csv").write_text(table)
+    result = CliRunner().invoke(main, ["edit", "points.csv", "edits.csv", "-o", "out.ply"])
+    assert result.exit_code == 1
+    assert words in result.stderr
+    assert not (folder / "out.ply").exists()
+
+
+def test_edits_of_a_file_are_taken_back(folder):
+    (folder / "script.json").write_text(json.dumps(SCRIPT))
+    for arguments in (
+        ["points.csv", "script.json", "-o", "edited.gpkg"],
+        ["edited.gpkg", "--undo", "2", "-o", "before.gpkg"],
+        ["before.gpkg", "--undo", "3", "-o", "first.ply"],
+    ):
+        result = CliRunner().invoke(main, ["edit", *arguments])
+        assert result.exit_code == 0, result.stderr
+    assert "Undone" in result.stderr
+    assert len(ts.read("before.gpkg").edits) == 3
+    np.testing.assert_array_equal(
+        ts.read("first.ply").points, ts.triangulate(ts.read("points.csv")).points
+    )
+    result = CliRunner().invoke(main, ["edit", "before.gpkg", "--undo", "4", "-o", "no.ply"])
+    assert result.exit_code == 1
+    assert "tells of 3 edits, and 4 cannot be taken back" in result.stderr
+    assert CliRunner().invoke(main, ["edit", "points.csv", "-o", "no.ply"]).exit_code == 2

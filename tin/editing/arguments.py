@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ...base.errors import PointsError
+from ...base.errors import LinesError, PointsError
 from ...base.sentences import counted, shown
 from .._kernel import LARGEST_ELEVATION
-from ..constraints.breaklines import as_coords
+from ..constraints.breaklines import Breakline, as_coords
 from ..validation.geometries import find_geometries
 from ..validation.points import as_elevations, as_points, clean_points
 from ..validation.tables import Table, as_table
@@ -60,6 +61,35 @@ def as_new_points(points: ArrayLike) -> Float64Array:
     """Return points to insert; an empty list is none."""
     is_empty = isinstance(points, list | tuple) and not points
     return as_points(np.empty((0, 3)) if is_empty else points)
+
+
+def as_breakline(line: Any) -> Breakline:
+    """Return a line to add, given as one, as its coordinates, or as a mapping of its arguments."""
+    if isinstance(line, Breakline):
+        return line
+    if not isinstance(line, Mapping):
+        return Breakline(line)
+    unknown = [name for name in line if name not in ("coords", "kind", "priority", "name")]
+    if unknown or "coords" not in line:
+        raise LinesError(
+            f"A breakline has {', '.join(map(shown, line))}: coords are needed, and kind, priority "
+            "and name are allowed."
+        )
+    return Breakline(**line)
+
+
+def write_breakline(line: Any) -> dict[str, Any]:
+    """Return a line as a mapping of its arguments, as edits are written down."""
+    made = as_breakline(line)
+    named = {"name": made.name} if made.name else {}
+    kind, priority = made.kind, made.priority
+    return {"coords": made.coords.tolist(), "kind": kind, "priority": priority, **named}
+
+
+def scale_breakline(line: Breakline, factor: float) -> Breakline:
+    """Return a line that is not draped, with its elevations times a factor."""
+    coords = line.coords * (1.0, 1.0, factor)
+    return Breakline(coords, kind=line.kind, priority=line.priority, name=line.name)
 
 
 def as_ends(a: int, b: int, count: int) -> Int64Array:

@@ -23,8 +23,8 @@ from .accounts import renumber_rows
 
 if TYPE_CHECKING:
     from ...base.arrays import BoolArray, Float64Array, Int32Array, Int64Array
+    from ..building import Version
     from ..building.inputs import BuildInputs
-    from ..building.version import Version
 
 FLIP = "flip"
 """Name of the soft breakline that keeps a flipped edge."""
@@ -154,10 +154,10 @@ def has_own_elevations(lines: LineSet) -> BoolArray:
     return has_own
 
 
-def add_line(lines: LineSet, *, breakline: Breakline) -> LineSet:
-    """Return the lines with a breakline behind the others."""
+def add_lines(lines: LineSet, *, added: Sequence[Breakline]) -> LineSet:
+    """Return the lines with breaklines behind the others."""
     is_breakline = np.arange(len(lines.kinds)) < count_breaklines(lines)
-    breaklines = [lines.choose(is_breakline), gather_lines([breakline], (), (), ())]
+    breaklines = [lines.choose(is_breakline), gather_lines(added, (), (), ())]
     return _number_lines(breaklines, lines.choose(~is_breakline))
 
 

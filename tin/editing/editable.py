@@ -18,22 +18,28 @@ from typing import TYPE_CHECKING, Any, Self, cast
 import numpy as np
 
 from ...base.crs import measure_angular_unit
+from ...base.errors import CrsError, LinesError
+from ...base.georeference import agree
 from ...base.ranges import require_degrees
+from ..building import Survey
 from ..building.reference import require_crs
+from ..constraints import Breakline
 from ..validation.geometries import is_plain
 from ..validation.tables import as_table
-from .arguments import as_array
+from .arguments import as_array, scale_breakline, write_breakline
 from .session import Origin, Session
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
     from numpy.typing import ArrayLike
 
-    from ...base.arrays import Int32Array, Int64Array
+    from ...base.arrays import Float64Array, Int32Array, Int64Array
     from ...base.crs import CRS
     from ...base.policies import BreaklineKind, CrossingPolicy, DuplicatePolicy
     from .._kernel import EditedMesh
+    from ..building import Version
     from ..building.inputs import BuildInputs
-    from ..building.version import Version
     from ..report import Edit
 
 _ONE = np.zeros(1, np.int32)
@@ -146,17 +152,32 @@ class Editable:
 
     # -------------------------------------------------------------------- edits
 
-    def insert(self, points: ArrayLike, *, duplicates: DuplicatePolicy = "last") -> Int32Array:
-        """Insert points, in place.
+    def insert(
+        self,
+        points: Survey | ArrayLike,
+        *,
+        duplicates: DuplicatePolicy = "last",
+        breaklines: Sequence[Any] = (),
+        attributes: Mapping[str, ArrayLike] | None = None,
+    ) -> Int32Array:
+        """Insert points, in place, and lines with them.
 
         Parameters
         ----------
-        points : (k, 3) array
-            They become further rows of input; a point on a line becomes a vertex of it.
+        points : Survey or (k, 3) array
+            They become further rows of input; a point on a line becomes a vertex of it. Of a
+            survey the breaklines and attributes come with its points, and elevations are converted
+            to the unit of the TIN.
         duplicates : {"last", "first", "mean", "lowest", "highest", "error"}
             Elevation of a vertex that stands at one of the places already: all rows, and the given
             vertices of lines there, get it. Points that ``snap`` merges with others are treated as
             in the build.
+        breaklines : sequence of Breakline, arrays or mappings
+            Added behind those that are there, in one build with the points; a mapping has the
+            arguments of a breakline by their names.
+        attributes : mapping of str to (k,) array, optional
+            Further columns of the points. A column that the TIN has not is missing in its own
+            rows, one that is not among these is missing in the new ones.
 
         Returns
         -------
@@ -167,7 +188,11 @@ class Editable:
         Raises
         ------
         PointsError, LinesError, OptionError
-            As :func:`tinsmith.triangulate`; then nothing has changed.
+            As :func:`tinsmith.triangulate`, or if a survey has rings (boundary, holes, erase,
+            water), which cannot be inserted; then nothing has changed.
+        CrsError
+            If a survey is in another CRS, or one of both is not known; if it cannot be told
+            whether elevations are in one unit.
 
         Examples
         --------
@@ -188,8 +213,44 @@ class Editable:
                 made = _ONE.copy()  # half the time of making an array of a list
                 made[0] = vertex
                 return made
-        vertices: Int32Array = self._edit("insert", points=points, duplicates=duplicates)
+        if isinstance(points, Survey):
+            points, more = self._take_survey(points)
+            breaklines = [*more["breaklines"], *breaklines]
+            attributes = more["attributes"] | dict(attributes or {})
+        given: dict[str, Any] = {"points": points, "duplicates": duplicates}
+        if len(breaklines):
+            given["breaklines"] = [write_breakline(one) for one in breaklines]
+        if attributes:
+            given["attributes"] = {name: np.array(attributes[name]) for name in attributes}
+        vertices: Int32Array = self._edit("insert", **given)
         return vertices
+
+    def _take_survey(self, survey: Survey) -> tuple[Float64Array, dict[str, Any]]:
+        """Return the points of a survey to be inserted, its lines and columns."""
+        rings = ("boundary", "holes", "erase", "water", "extent")
+        for name in (one for one in rings if len(getattr(survey, one))):
+            raise LinesError(
+                f"The survey has {'an extent' if name == 'extent' else name}: of a survey points "
+                "and breaklines can be inserted; its rings are for a build of all points."
+            )
+        factors = agree((cast("Any", self), survey), ("the TIN", "the survey")).factors
+        if factors[0] != 1.0:
+            raise CrsError(
+                "The unit of elevations of the TIN is not known, and that of the survey is: "
+                "declare that of the TIN first.",
+                crs=self._crs,
+            )
+        lines = [one if isinstance(one, Breakline) else Breakline(one) for one in survey.breaklines]
+        scale = (1.0, 1.0, factors[1])
+        if factors[1] != 1.0:
+            lines = [one if one.is_draped else scale_breakline(one, factors[1]) for one in lines]
+        columns = {name: survey.attributes[name] for name in survey.attributes}
+        return survey.points * scale, {"breaklines": lines, "attributes": columns}
+
+    def _count_inserted(self) -> list[int]:
+        """Return how many rows each edit added."""
+        with self._lock:
+            return self._open_session().count_added()
 
     def remove(self, vertices: ArrayLike) -> None:
         """Remove vertices, in place; those behind them move up, as in ``numpy.delete``.

@@ -21,7 +21,7 @@ from ..validation.points import as_points
 
 if TYPE_CHECKING:
     from ...base.arrays import Int32Array
-    from ..building.version import Version
+    from ..building import Version
     from ..triangulation import Triangulation
 
 

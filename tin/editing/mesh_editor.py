@@ -16,19 +16,20 @@ import numpy as np
 from ...base.errors import PointsError
 from ...base.sentences import coordinate, height
 from .. import _kernel
+from ..building import Version
 from ..building.duplicates import choose_elevations, merge_rows
-from ..building.version import Version
 from ..report import Edit, Report
 from ..triangulation import Triangulation
 from .accounts import account_for_removed, add_chain, renumber_vertices, replace_merges
-from .changes import Change, Done, add_line, make_flipped_edge, require_inner
+from .changes import Change, Done, add_lines, make_flipped_edge, require_inner
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Callable, Iterator, Sequence
 
     from ...base.arrays import BoolArray, Float64Array, Int32Array, Int64Array
     from ...base.policies import DuplicatePolicy
     from ..building.inputs import BuildInputs
+    from ..constraints import Breakline
     from .changes import NumberedInputs
 
 _Mesh = tuple["Int32Array", "Int32Array", "BoolArray"]
@@ -130,7 +131,9 @@ class Editor:
 
     # -------------------------------------------------------------------- edits
 
-    def insert(self, xyz: Float64Array, policy: DuplicatePolicy) -> Done:
+    def insert(
+        self, xyz: Float64Array, policy: DuplicatePolicy, lines: Sequence[Breakline] = ()
+    ) -> Done:
         """Insert rows of points.
 
         Raises
@@ -138,6 +141,8 @@ class Editor:
         PointsError
             If vertices are there, and the policy is "error".
         """
+        if lines:
+            raise NotLocal
         before = self.edited, self._unchanged
         first = self.edited.slots
         # whether growing all points anew is quicker than inserting so many
@@ -319,7 +324,7 @@ class Editor:
         self._mesh.force(np.array([beside], np.int32))
         self._lines = add_chain(self._lines, beside, line)
         self._keep_clear(self.edited.points())
-        return Done(Change(lines=(partial(add_line, breakline=line),)))
+        return Done(Change(lines=(partial(add_lines, added=[line]),)))
 
     # ------------------------------------------------------------------ the log
 

@@ -12,8 +12,10 @@ from ...base.checks import is_whole_number
 from ...base.errors import LinesError, choice
 from ...base.policies import CrossingPolicy, DuplicatePolicy
 from ...base.sentences import shown
-from ..constraints.breaklines import Breakline
+from ..building import as_columns
+from ..constraints import Breakline, as_sequence
 from .arguments import (
+    as_breakline,
     as_ends,
     as_new_points,
     as_point,
@@ -23,7 +25,7 @@ from .arguments import (
 )
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Mapping, Sequence
 
     from numpy.typing import ArrayLike
 
@@ -32,9 +34,18 @@ if TYPE_CHECKING:
     from .rebuilding import Rebuild
 
 
-def _insert(tin: Editor | Rebuild, points: ArrayLike, duplicates: DuplicatePolicy = "last") -> Done:
+def _insert(
+    tin: Editor | Rebuild,
+    points: ArrayLike,
+    duplicates: DuplicatePolicy = "last",
+    *,
+    breaklines: Sequence[Any] = (),
+    attributes: Mapping[str, Any] | None = None,
+) -> Done:
     xyz = as_new_points(points)
-    return tin.insert(xyz, choice("duplicates", duplicates, DuplicatePolicy))
+    as_columns(attributes or {}, (len(xyz),))
+    lines = tuple(map(as_breakline, as_sequence(breaklines, "breaklines")))
+    return tin.insert(xyz, choice("duplicates", duplicates, DuplicatePolicy), lines)
 
 
 def _remove(tin: Editor | Rebuild, vertices: ArrayLike) -> Done:

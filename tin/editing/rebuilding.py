@@ -14,7 +14,7 @@ from .changes import (
     FLIP,
     Change,
     Done,
-    add_line,
+    add_lines,
     count_breaklines,
     drop_lines,
     drop_vertices,
@@ -27,11 +27,11 @@ from .changes import (
 from .mesh_editor import explain_occupied, merge_elevations
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Sequence
 
     from ...base.arrays import AnyArray, Float64Array, Int64Array
     from ...base.policies import CrossingPolicy, DuplicatePolicy
-    from ..building.version import Version
+    from ..building import Version
     from ..constraints.breaklines import Breakline
     from .changes import NumberedInputs
 
@@ -50,16 +50,28 @@ class Rebuild:
         """Number of vertices."""
         return len(self._now().triangulation.points)
 
-    def insert(self, xyz: Float64Array, policy: DuplicatePolicy) -> Done:
-        """Add rows of points."""
+    def insert(
+        self, xyz: Float64Array, policy: DuplicatePolicy, lines: Sequence[Breakline] = ()
+    ) -> Done:
+        """Add rows of points, and breaklines."""
         surface = self._now().triangulation
         there = surface.vertices_at(xyz[:, :2])
         own = np.where(there < 0, np.nan, surface.points[there, 2])
         z = _merge_new_elevations(xyz, own, policy)
         change, _ = self._change_elevations(there[there >= 0], z[there >= 0])
         change = change._replace(added=np.column_stack([xyz[:, :2], z]))
-        found = self._build(change)
-        return Done(change, found, found.vertex_of[len(found.vertex_of) - len(xyz) :])
+        if lines:
+            change = change._replace(lines=(*change.lines, partial(add_lines, added=lines)))
+        inputs = self._inputs.after([change])
+        found, all_lines = inputs.build(), inputs.build_inputs.lines
+        count = count_breaklines(all_lines)
+        crossings = [
+            sentence
+            for number in range(count - len(lines), count)
+            for sentence in describe_crossings(found.report, all_lines.label(number))
+        ]
+        result = found.vertex_of[len(found.vertex_of) - len(xyz) :]
+        return Done(change, found, result, tuple(dict.fromkeys(crossings)))
 
     def remove(self, vertices: Int64Array) -> Done:
         """Remove the rows at vertices, and the vertices of lines there."""
@@ -149,12 +161,12 @@ class Rebuild:
             change = Change(lines=(partial(drop_lines, numbers=tuple(sources)),))
         else:
             flipped = make_flipped_edge(surface.points[[a, b, left, right]])
-            change = Change(lines=(partial(add_line, breakline=flipped),))
+            change = Change(lines=(partial(add_lines, added=[flipped]),))
         return Done(change, self._build(change))
 
     def add_breakline(self, line: Breakline, crossing: CrossingPolicy) -> Done:
         """Add a breakline behind the others."""
-        change = Change(lines=(partial(add_line, breakline=line),))
+        change = Change(lines=(partial(add_lines, added=[line]),))
         inputs = self._inputs.after([change])
         found, lines = inputs.build(), inputs.build_inputs.lines
         number = count_breaklines(lines) - 1

@@ -24,8 +24,8 @@ from .rebuilding import Rebuild
 if TYPE_CHECKING:
     from ...base.arrays import AnyArray
     from .._kernel import EditedMesh
+    from ..building import Version
     from ..building.inputs import BuildInputs
-    from ..building.version import Version
 
 
 class Origin(NamedTuple):
@@ -174,6 +174,11 @@ class Session:
             return None
         self._editor.edited.lend()
         return self._editor.edited
+
+    def count_added(self) -> list[int]:
+        """Return how many rows each edit added to the inputs."""
+        self.settle()
+        return [len(change.added) for change in self._changes]
 
     def list_edits(self) -> tuple[Edit, ...]:
         """Return what was done, in order."""

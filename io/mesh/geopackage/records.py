@@ -64,8 +64,8 @@ def pack_tin(tin: TIN) -> Record:
         **_pack_version(version, packer),
         "edits": packer.pack(origin.edits),
     }
-    if tin.row_attributes:
-        document["attributes"] = pack_columns(tin.row_attributes, packer.pack)
+    if tin._row_attributes:  # those of inserted rows are in the edits
+        document["attributes"] = pack_columns(tin._row_attributes, packer.pack)
     if origin.inputs is not None:
         inputs = origin.inputs
         rows = inputs.points
@@ -109,6 +109,8 @@ class _Packer:
 
     def pack(self, value: Any) -> Any:
         """Return a value as a tree."""
+        if isinstance(value, np.ndarray) and not _STORED.fullmatch(value.dtype.str):
+            value = _list_plain(value)  # a column of rows that an edit inserted
         if isinstance(value, np.ndarray):
             name = str(len(self.arrays))
             self.arrays[name] = value
@@ -155,13 +157,17 @@ def pack_columns(columns: Mapping[str, AnyArray], pack: Callable[[Any], Any]) ->
 def _pack_column(values: AnyArray, pack: Callable[[Any], Any]) -> list[Any]:
     kind = values.dtype.newbyteorder("<").str
     if kind[1] in "OUSVc" or not _TYPE.fullmatch(kind):
-        plain = [one if isinstance(one, _PLAIN) else str(one) for one in values.tolist()]
-        return [kind if kind[1] == "U" else "|O", pack(plain)]
+        return [kind if kind[1] == "U" else "|O", pack(_list_plain(values))]
     values = np.ascontiguousarray(values, kind)
     if _STORED.fullmatch(kind):
         return [kind, pack(values)]
     wider = "f4" if kind[1] == "f" else "i8"
     return [kind, pack(values.view(wider) if values.itemsize == 8 else values.astype(wider))]
+
+
+def _list_plain(values: AnyArray) -> list[Any]:
+    """Return values of a column; what is no plain one becomes text."""
+    return [one if isinstance(one, _PLAIN) else str(one) for one in values.tolist()]
 
 
 def unpack_columns(trees: Any, unpack: Callable[[Any], Any], n_rows: int) -> dict[str, AnyArray]:

@@ -24,7 +24,7 @@ LISTED_BY = {
 """Subjects of options that only the help of one of the commands lists that have them."""
 _OF_FORMATS = "tinsmith.options_of_formats"
 _CONTEXT = "tinsmith.context"
-_VERBATIM = re.compile(r"^(?=(?:Example|A script):$)", re.MULTILINE)
+_VERBATIM = re.compile(r"^(?=(?:Example|A script|A table):$)", re.MULTILINE)
 """Where lines of a help begin that are not wrapped."""
 
 

@@ -108,8 +108,32 @@ class Job:
 
         They are reprojected if that is asked for.
         """
-        from ..io import reproject
         from ..io.reading import join_files
+
+        found = self._read_each(paths)
+        if len(found) == 1:
+            return found[0]
+        return join_files(found, [Path(name_file(path)) for path in paths])
+
+    def read_base(self, *paths: Path, need: str) -> tuple[TIN | None, Survey]:
+        """Read points, and the TIN that they are for, if there are several files, the first of one.
+
+        ``need`` is as for :meth:`read_survey`.
+        """
+        from ..io.reading import join_files
+        from ..tin import TIN
+
+        found, base = self._read_each(paths), None
+        if len(found) > 1 and isinstance(found[0], TIN):
+            base = found.pop(0)
+        names = [Path(name_file(path)) for path in paths[-len(found) :]]
+        survey = found[0] if len(found) == 1 else join_files(found, names)
+        if isinstance(survey, TIN):
+            raise Failure(f"'{paths[-1]}' holds a TIN{need}")
+        return base, survey
+
+    def _read_each(self, paths: Sequence[Path]) -> list[Survey | TIN]:
+        from ..io import reproject
 
         require_format("--format", self.reading.format)
         found: list[Survey | TIN] = []
@@ -120,9 +144,7 @@ class Job:
                 else:
                     one = _read_to_reproject(path, self.reading, self.reading.to_crs)
                     found.append(reproject(one, self.reading.to_crs))
-        if len(found) == 1:
-            return found[0]
-        return join_files(found, [Path(name_file(path)) for path in paths])
+        return found
 
     def read_survey(self, *paths: Path, need: str) -> Survey:
         """Read points, or refuse a TIN; ``need`` ends the sentence that says why."""

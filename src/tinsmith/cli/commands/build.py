@@ -74,9 +74,10 @@ def build(
     """Build the exact Delaunay TIN of elevation points and lines.
 
     POINTS is a text file of survey points (CSV, TXT, XYZ) or an elevation raster (DEM); several
-    files, or a folder of tiles, are read as one survey. 'tinsmith formats' lists what can be read
-    and written. Breaklines, a boundary, holes and water are read from vector files, in any CRS, or
-    made from the field codes of the points.
+    files, or a folder of tiles, are read as one survey. If the first file holds a TIN, the points
+    and breaklines of the others are inserted into it, and all of its own stay. 'tinsmith formats'
+    lists what can be read and written. Breaklines, a boundary, holes and water are read from vector
+    files, in any CRS, or made from the field codes of the points.
 
     In tiles (--tiles N, or where memory is short) the surface is written as one file (.ply), or as
     a folder: a file for each tile, or squares at several scales for globes with --output-format
@@ -85,6 +86,7 @@ def build(
     Example:
       tinsmith build sample_data/site_survey.csv --crs EPSG:32616 --codes -o site.geojson
       tinsmith build sample_data/jacksboro.tif --stride 4 -o hills.ply -o hills.stl
+      tinsmith build site.gpkg points.csv -o new.gpkg
       tinsmith build --from-contours contours.gpkg --z-field elevation -o hills.gpkg
     """
     from ...terrain import mend_flats
@@ -105,8 +107,14 @@ def build(
     for name in scales:
         raise click.UsageError(f"--{name.replace('_', '-')} is for 3D Tiles, which need --tiles.")
     planned = job.plan(job.list_inputs(*points), "TIN", report=report)
-    survey = _read(points, job, is_contours=from_contours)
-    tin, suspects = _find_blunders(job.build_tin(survey), job, drop=drop_blunders)
+    base, survey = _read(points, job, is_contours=from_contours)
+    if base is None:
+        built = job.build_tin(survey)
+    else:
+        if drop_blunders:
+            raise click.UsageError("--drop-blunders is for points, and the first file holds a TIN.")
+        built = _insert(base, survey, points[0], job)
+    tin, suspects = _find_blunders(built, job, drop=drop_blunders)
     if from_contours:
         with job.step("Mending flat triangles") as progress:
             tin = mend_flats(tin, progress=progress)
@@ -116,7 +124,11 @@ def build(
     if report is not None:
         write_text(report, format_json(account) + "\n")
     rows = [*report_suspects(suspects), *_summarise_flats(tin, is_mended=from_contours)]
-    facts = _list_facts(points, survey, tin, rows)
+    if base is None:
+        facts = _list_facts(points, survey, tin, rows)
+    else:
+        facts = _list_inserted(points, survey, base, tin)
+        facts.extend(rows)
     facts.record(
         report=account,
         outputs=lambda: [
@@ -155,16 +167,17 @@ def _is_built_in_tiles(
     return True
 
 
-def _read(points: Sequence[Path], job: Job, *, is_contours: bool) -> Survey:
-    """Read points with their lines; of contours lines as breaklines, where formats have a choice.
+def _read(points: Sequence[Path], job: Job, *, is_contours: bool) -> tuple[TIN | None, Survey]:
+    """Read points with their lines, and the TIN that they are for, if the first file holds one.
 
-    Most lines of contours must be level.
+    Of contours lines are breaklines, where formats have a choice; most of them must be level.
     """
     import numpy as np
 
     need = " already: use 'tinsmith convert' to write it in another format."
     if not is_contours:
-        return job.add_lines(job.read_survey(*points, need=need))
+        base, survey = job.read_base(*points, need=need)
+        return base, job.add_lines(survey)
     if job.reading.options.get("lines_as") == "points":
         raise click.UsageError("--from-contours takes lines as breaklines, --lines-as as points.")
     job = job.with_fallback(lines_as="breaklines")
@@ -178,7 +191,21 @@ def _read(points: Sequence[Path], job: Job, *, is_contours: bool) -> Survey:
             f"'{points[0]}': of {counted(len(lines), 'line')} {level:,} are level: these are not "
             "contours, since all points of a contour have the same elevation."
         )
-    return job.add_lines(survey)
+    return None, job.add_lines(survey)
+
+
+def _insert(base: TIN, survey: Survey, path: Path, job: Job) -> TIN:
+    """Insert points with their lines into a TIN."""
+    how = job.building
+    asked = {"max_edge": how.max_edge, "conforming": how.conforming, "snap": how.snap}
+    for name in (name for name, value in asked.items() if value):
+        flag = f"--{name.replace('_', '-')}"
+        raise Failure(f"'{path}' holds a TIN already, and {flag} needs points to build from.")
+    tin = base.copy()
+    duplicates: Any = how.duplicates
+    with job.step(f"Inserting {counted(len(survey), 'point')}"):
+        tin.insert(survey, duplicates=duplicates)
+    return tin
 
 
 def _find_blunders(tin: TIN, job: Job, *, drop: bool) -> tuple[TIN, Suspects]:
@@ -202,6 +229,21 @@ def _summarise_flats(tin: TIN, *, is_mended: bool) -> list[Row]:
         return [("Contours", tin.report.notes[-1])]
     advice = "'tinsmith build --from-contours' takes contour lines and mends them."
     return [("Flats", f"{sentence}: {advice}") for sentence in describe_flats(tin)]
+
+
+def _list_inserted(points: Sequence[Path], survey: Survey, base: TIN, tin: TIN) -> Facts:
+    from ..output.summaries import describe_survey, summarise_crs, summarise_reading
+
+    facts = Facts(input=describe_inputs(points), survey=lambda: describe_survey(survey))
+    facts.add("Read", f"a TIN of {describe_counts(base)} from {name_files(points[:1])}")
+    lines = f", {counted(len(survey.breaklines), 'breakline')}" if survey.breaklines else ""
+    inserted = f"{counted(len(survey), 'point')}{lines} from {name_files(points[1:])}"
+    facts.add("Inserted", inserted)
+    facts.extend(summarise_reading(survey))
+    facts.add_tin("TIN", tin)
+    facts.extend([summarise_crs(tin.crs)])
+    facts.note([*survey.notes, *(note for edit in tin.edits[-1:] for note in edit.notes)])
+    return facts
 
 
 def _list_facts(points: Sequence[Path], survey: Survey, tin: TIN, rows: list[Row]) -> Facts:
