@@ -12,8 +12,7 @@ from ...base import optional
 from ...base.checks import require_tin, require_type
 from ...base.crs import assume_elevation_unit
 from ...base.errors import LinesError, OptionError, PointsError, choice
-from ...base.georeference import require_same_crs
-from ...base.georeference.axes import find_axes, undo_north_up
+from ...base.georeference import find_axes, require_same_crs, undo_north_up
 from ...base.notes import join_notes
 from ...base.policies import ContourLabeling, GridStyle, PointMarking, SheetLayout
 from ...base.products import product

@@ -9,7 +9,7 @@ from .agreement import (
     find_plane_units,
     require_same_crs,
 )
-from .axes import find_axes, label_axes
+from .axes import find_axes, label_axes, undo_north_up
 from .units import find_scales
 
 __all__ = [
@@ -23,4 +23,5 @@ __all__ = [
     "find_scales",
     "label_axes",
     "require_same_crs",
+    "undo_north_up",
 ]
