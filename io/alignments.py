@@ -8,7 +8,7 @@ from ..base.atomic import as_path
 from ..base.errors import OptionError, ReadError
 from ..base.notes import naming_file
 from ..base.sentences import FILE, counted
-from ..terrain.alignments import Alignment
+from ..terrain import Alignment
 from .isolated.spooling import translate_system_errors
 from .registry.lookup import find_format
 

@@ -12,7 +12,7 @@ from ..base.plug_ins import describe_failure
 from ..base.products import product
 from ..base.progress import Progress
 from ..base.results import Features, Raster, Table
-from ..terrain.alignments import Alignment
+from ..terrain import Alignment
 from ..tin import Surface, Survey
 from .registry.format import require_options, takes_progress
 from .registry.lookup import find_writer

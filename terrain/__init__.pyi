@@ -4,11 +4,6 @@ from ..base.errors import RenderError as RenderError
 from ..base.results import Features as Features
 from ..base.results import Raster as Raster
 from ..base.results import Table as Table
-from .alignments import Alignment as Alignment
-from .alignments import Element as Element
-from .alignments import StationEquation as StationEquation
-from .alignments import VerticalAlignment as VerticalAlignment
-from .alignments import VerticalPoint as VerticalPoint
 from .charts.blunders import blunder_map as blunder_map
 from .charts.comparison import comparison_picture as comparison_picture
 from .charts.earthwork import earthwork_map as earthwork_map
@@ -19,7 +14,6 @@ from .charts.profiles import profile_picture as profile_picture
 from .charts.relief import relief_map as relief_map
 from .charts.sections import section_picture as section_picture
 from .charts.triangles import to_matplotlib as to_matplotlib
-from .corridors import section_volumes as section_volumes
 from .drawing.models import lift as lift
 from .earthwork import Difference as Difference
 from .earthwork import ErrorModel as ErrorModel
@@ -66,6 +60,12 @@ from .sections import cross_sections as cross_sections
 from .sections import drape as drape
 from .sections import profile as profile
 from .sections import section_lines as section_lines
+from .sections import section_volumes as section_volumes
+from .sections.alignments import Alignment as Alignment
+from .sections.alignments import Element as Element
+from .sections.alignments import StationEquation as StationEquation
+from .sections.alignments import VerticalAlignment as VerticalAlignment
+from .sections.alignments import VerticalPoint as VerticalPoint
 from .sight import line_of_sight as line_of_sight
 from .sight import viewshed as viewshed
 from .sight import visible_vertices as visible_vertices

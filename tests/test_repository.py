@@ -197,7 +197,6 @@ LARGER_FOLDERS = {
     "io/mesh": 27,
     "io/delimited": 24,
     "io/vector": 22,
-    "src/tinsmith/cli/commands": 30,
     "qgis/tinsmith/icons": 22,
 }
 """Those with a module for each format or command, and those to be divided: may only shrink."""

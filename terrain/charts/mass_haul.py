@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING, Any
 
 from ...base.errors import OptionError
 from ...base.results import Table
-from ..corridors import find_balanced
 from ..drawing import palette
+from ..sections import find_balanced
 from .figures import INK, color_frame, picture, start_panels
 
 if TYPE_CHECKING:

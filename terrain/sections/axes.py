@@ -9,8 +9,8 @@ import numpy as np
 from ...base.checks import as_number
 from ...base.errors import LinesError, OptionError
 from ...base.georeference import require_same_crs
-from ..alignments import Alignment
 from ..surface import Segments, as_features, as_segments
+from .alignments import Alignment
 
 if TYPE_CHECKING:
     from ...base.arrays import AnyArray, Float64Array, Int64Array

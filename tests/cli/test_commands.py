@@ -409,7 +409,7 @@ def drawn(monkeypatch):
 def test_view_shows_a_sample_of_a_large_raster_and_says_so(
     tmp_path, monkeypatch, drawn, name, most
 ):
-    monkeypatch.setattr("tinsmith.cli.commands.view._MOST_CELLS", 400)
+    monkeypatch.setattr("tinsmith.cli.commands.surfaces.view._MOST_CELLS", 400)
     dem = SAMPLES / "jacksboro.tif"
     result = run("view", dem, "-o", tmp_path / name, "--json")
     (tin, options), whole = drawn[0], len(ts.read(dem).points)
@@ -422,7 +422,7 @@ def test_view_shows_a_sample_of_a_large_raster_and_says_so(
 
 @pytest.mark.parametrize("options", [["--full"], ["--stride", "2"]])
 def test_view_shows_all_cells_that_are_asked_for(tmp_path, monkeypatch, drawn, options):
-    monkeypatch.setattr("tinsmith.cli.commands.view._MOST_CELLS", 400)
+    monkeypatch.setattr("tinsmith.cli.commands.surfaces.view._MOST_CELLS", 400)
     dem = SAMPLES / "jacksboro.tif"
     result = run("view", dem, "-o", tmp_path / "a.png", *options)
     stride = 2 if "--stride" in options else 1
@@ -432,7 +432,7 @@ def test_view_shows_all_cells_that_are_asked_for(tmp_path, monkeypatch, drawn, o
 
 
 def test_view_of_a_raster_from_standard_input_is_a_sample_too(tmp_path, monkeypatch, drawn):
-    monkeypatch.setattr("tinsmith.cli.commands.view._MOST_CELLS", 400)
+    monkeypatch.setattr("tinsmith.cli.commands.surfaces.view._MOST_CELLS", 400)
     dem = (SAMPLES / "jacksboro.tif").read_bytes()
     result = CliRunner().invoke(main, ["view", "-", "-o", str(tmp_path / "a.png")], input=dem)
     assert result.exit_code == 0, result.output

@@ -12,7 +12,7 @@ from click.testing import CliRunner
 
 import tinsmith as ts
 from tinsmith.cli import main
-from tinsmith.cli.commands.compare import _sample_points
+from tinsmith.cli.commands.surfaces.compare import _sample_points
 from tinsmith.terrain import comparison_picture
 from tinsmith.terrain.drawing.palette import TRIANGULATIONS
 

@@ -16,7 +16,7 @@ from support.processes import run
 
 from tinsmith.cli import main
 from tinsmith.cli.command import LISTED_BY, Command
-from tinsmith.cli.command_list import SECTIONS, SUMMARIES
+from tinsmith.cli.command_list import FOLDERS, SECTIONS, SUMMARIES
 from tinsmith.io import known_formats
 
 
@@ -107,7 +107,7 @@ def test_every_command_has_its_line_in_the_help():
         assert f"{heading}: " in lines
         for name, summary in summaries.items():
             assert f"{name} {summary}" in lines
-            command = getattr(import_module(f"tinsmith.cli.commands.{name}"), name)
+            command = getattr(import_module(f"tinsmith.cli.commands.{FOLDERS[name]}.{name}"), name)
             assert isinstance(command, Command)
 
 

@@ -9,9 +9,8 @@ import pytest
 from support.processes import run
 
 HEAVY = "numpy pandas shapely pyproj rich rasterio pyogrio matplotlib pyvista vtk meshio laspy"
-NOT_FOR_HELP = (
-    f"{HEAVY} importlib.metadata tinsmith.cli.commands.build tinsmith.tin tinsmith.io.reading"
-)
+A_COMMAND = "tinsmith.cli.commands.surfaces.build"
+NOT_FOR_HELP = f"{HEAVY} importlib.metadata {A_COMMAND} tinsmith.tin tinsmith.io.reading"
 NOT_FOR_JOBS = "pandas rich rasterio pyogrio matplotlib pyvista vtk meshio laspy pyarrow"
 PARTS = "tinsmith.terrain.plans tinsmith.terrain.charts tinsmith.terrain.viewer"
 PROGRAM = """

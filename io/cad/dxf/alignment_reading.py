@@ -10,7 +10,7 @@ import numpy as np
 from ....base.errors import ReadError
 from ....base.georeference import find_axes
 from ....base.sentences import FILE, coordinate, counted
-from ....terrain.alignments import Alignment, Element
+from ....terrain import Alignment, Element
 from ..reference import Declared, choose_measures, require_own_crs
 from .model_space import ModelSpace, read_model_space
 

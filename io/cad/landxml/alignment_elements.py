@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from ....base.sentences import coordinate, shown
-from ....terrain.alignments import Element
+from ....terrain import Element
 from .numbers import fault, parse_list
 
 if TYPE_CHECKING:

@@ -9,7 +9,7 @@ import numpy as np
 from ....base.errors import CrsError, OptionError, ReadError, TinsmithError
 from ....base.georeference import find_axes
 from ....base.sentences import FILE, coordinate, counted, shown
-from ....terrain.alignments import Alignment, StationEquation, VerticalAlignment, VerticalPoint
+from ....terrain import Alignment, StationEquation, VerticalAlignment, VerticalPoint
 from ..reference import Declared, Measures, choose_measures, require_own_crs
 from .alignment_elements import LARGEST_MISFIT, ElementReader
 from .alignment_nodes import Node, parse_alignments

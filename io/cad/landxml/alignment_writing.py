@@ -9,13 +9,13 @@ from typing import TYPE_CHECKING
 from ....base.errors import FormatError
 from ....base.georeference import find_axes
 from ....base.sentences import FILE
-from ....terrain.alignments import Element
+from ....terrain import Element
 from .content import quote
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from ....terrain.alignments import Alignment, VerticalPoint
+    from ....terrain import Alignment, VerticalPoint
 
 _STRAIGHT = 1e-12
 """Radians of a turn that rounding leaves where a spiral is straight."""

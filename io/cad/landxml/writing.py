@@ -17,7 +17,7 @@ from ....base.errors import FormatError, OptionError
 from ....base.notes import warn
 from ....base.results import Features
 from ....base.sentences import FILE
-from ....terrain.alignments import Alignment
+from ....terrain import Alignment
 from ....tin import TIN, Surface, Survey
 from ...registry.losses import select_attributes, warn_of_unknown_elevations
 from ..drawing import choose_length_unit, list_lines, scale_elevations

@@ -42,4 +42,7 @@ SECTIONS = {
     },
 }
 
+FOLDERS = {name: heading.lower() for heading, commands in SECTIONS.items() for name in commands}
+"""Of each command the folder of its module, which has the name of its subject."""
+
 SUMMARIES = {name: summary for commands in SECTIONS.values() for name, summary in commands.items()}

@@ -13,7 +13,7 @@ import click
 
 from .. import __version__
 from ..base.sentences import suggest
-from .command_list import SECTIONS, SUMMARIES
+from .command_list import FOLDERS, SECTIONS, SUMMARIES
 from .output.events import note_events
 from .output.failures import report_warning, show_failure, translate_failures
 from .output.streams import (
@@ -43,7 +43,8 @@ class _Commands(click.Group):
         cmd_name: str,
     ) -> click.Command | None:
         if cmd_name in _BUILT_IN:
-            module = import_module(f".commands.{cmd_name}", __package__)
+            where = f".commands.{FOLDERS[cmd_name]}.{cmd_name}"
+            module = import_module(where, __package__)
             built_in: click.Command = getattr(module, cmd_name)
             return built_in
         claims = find_commands().get(cmd_name)

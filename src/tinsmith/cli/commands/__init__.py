@@ -1,1 +1,1 @@
-"""The commands, one module each."""
+"""The commands, one module each, in folders by their subject in the help."""

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from ...base.checks import as_length, as_number
 from ...base.crs import CRS
 from ...base.georeference import require_same_crs
-from ...terrain.alignments import Alignment
+from ...terrain import Alignment
 from ...terrain.sections import CHORD, as_axis, lines_to_segments, profile
 from ...terrain.surface import as_features
 from ..along import compute_along, join_along, keep_lines

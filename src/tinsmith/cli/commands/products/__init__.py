@@ -1,0 +1,1 @@
+"""Commands that derive something of a surface."""

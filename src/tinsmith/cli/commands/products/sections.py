@@ -1,0 +1,90 @@
+"""``tinsmith sections``: volumes between cross sections of two surfaces, and mass haul."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from ...axes import axis_options, is_landxml, read_axis
+from ...command import command
+from ...job import Job, name_features, surface_options
+from ...output.counts import mesh_counts
+from ...output.facts import Facts, list_rows, name_units
+from ...parameters import output_option
+from ...paths import INPUT, make_title
+from ...product_options import product_options
+
+if TYPE_CHECKING:
+    from ....terrain import Table
+    from ...output.console import Row
+
+
+@command
+@click.argument("ground", type=INPUT)
+@click.argument("design", type=INPUT)
+@output_option("Table (.csv, .json) or diagram of mass haul (.png) to write.")
+@axis_options("LandXML, DXF or vector file of the axis.")
+@product_options(
+    "terrain.sections.quantities.section_volumes",
+    "interval width left right start cut_factor fill_factor",
+    interval="A section at every multiple of it, and at both ends.",
+    width="Of the sections, half of it to either side.",
+    left="How far sections reach to the left instead.",
+    right="How far sections reach to the right instead.",
+    start="Station where a line begins; an alignment has its own.",
+)
+@click.option("--title", metavar="TEXT", help="Title of the diagram; default the files' names.")
+@surface_options()
+def sections(ground: Path, design: Path, line_file: Path | None, job: Job, **asked: Any) -> None:
+    """Compute cut and fill from the TIN in GROUND to that in DESIGN, section by section.
+
+    Each section has its areas; from one to the next there are the volumes between both surfaces,
+    and those of the mean areas and of Simpson's rule, which contracts measure by; then the ordinate
+    of mass haul. The axis is an alignment of LandXML, a DXF drawing, or the line of a vector file.
+
+    Example:
+      tinsmith sections ground.csv design.csv --line road.xml --interval 20 --width 30
+        -o quantities.csv -o mass-haul.png
+    """
+    from ....terrain import mass_haul_picture, section_volumes
+
+    if line_file is None:
+        raise click.UsageError("An axis is needed: --line FILE.")
+    if asked["interval"] is None:
+        raise click.UsageError("The interval of the sections is needed: --interval LENGTH.")
+    more = name_features(line_file, "the file of --line")
+    planned = job.plan(job.list_inputs(ground, design, more=more), "Table", "picture")
+    surfaces = job.read_tins([ground, design])
+    first, second = surfaces
+    axis = read_axis(line_file, asked.pop("alignment"), crs=first.crs)
+    title = asked.pop("title") or f"Mass haul: {make_title(ground)} to {make_title(design)}"
+    start = asked.pop("start")
+    if start != 0.0:
+        if is_landxml(line_file):
+            raise click.UsageError("--start is for lines: an alignment has stations of its own.")
+        axis = replace(axis, start=start)
+    with job.step("Measuring") as progress:
+        table = section_volumes(first, second, axis, progress=progress, **asked)
+    planned.write("Table", table)
+    planned.draw(lambda: mass_haul_picture(table, title=title))
+    rows = list(zip(("Ground", "Design"), map(mesh_counts, surfaces), strict=True))
+    job.finish(planned, _list_facts([ground, design], table, rows))
+
+
+def _list_facts(files: list[Path], table: Table, rows: list[Row]) -> Facts:
+    facts = Facts(inputs=[str(file) for file in files])
+    facts.record(rows=list_rows(table.columns), units=name_units(table.units))
+    facts.extend(rows)
+    facts.add("Sections", f"{len(table):,}")
+    for name in ("cut", "fill"):
+        unit = table.units.get(f"{name}_total")
+        symbol = getattr(unit, "symbol", unit) or ""
+        by_areas = float(table[f"{name}_end_area"].sum())
+        text = f"{table[f'{name}_total'][-1]:,.2f} {symbol}, by mean areas {by_areas:,.2f} {symbol}"
+        facts.add(name.capitalize(), text)
+    facts.add("Mass", f"{table['mass'][-1]:+,.2f} at the end")
+    facts.note(table.notes)
+    return facts

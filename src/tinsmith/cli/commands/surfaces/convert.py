@@ -1,0 +1,76 @@
+"""``tinsmith convert``: the same points or TIN in another format."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from ....base.sentences import counted
+from ...command import file_command
+from ...job import Job, surface_options
+from ...options import CONSOLE, READING, WRITING
+from ...output.facts import Facts
+from ...output.failures import Failure
+from ...paths import name_file, split_output
+
+if TYPE_CHECKING:
+    from ....terrain import Raster
+    from ....tin import Survey
+
+
+@file_command
+@surface_options(READING, WRITING, CONSOLE)
+def convert(file: Path, job: Job) -> None:
+    """Write what is in FILE in another format: a TIN as a TIN, points as points.
+
+    A TIN can also be written as points or features (--kind), and points that are the cells of a
+    grid, such as those of a DEM, as a raster. To build a TIN from points, use 'tinsmith build';
+    for a raster of another surface 'tinsmith raster'.
+
+    Example:
+      tinsmith convert sample_data/site_survey.csv -o site.xyz
+    """
+    from ....tin import Survey
+    from ...output.summaries import note_assumed_unit, summarise_reading
+    from ...outputs import describe_file
+
+    planned = job.plan(
+        job.list_inputs(file),
+        "TIN",
+        "Survey",
+        "Raster",
+        choose=lambda one: "Raster" if {*one.formats} == {"Raster"} else "any",
+    )
+    found = job.read(file)
+    made: Any = found
+    if planned.holds("Raster") and isinstance(found, Survey):
+        made = _make_raster(found, planned.outputs["Raster"][0].path)
+    planned.write("any", found)
+    planned.write("Raster", made)
+    job.note_found(found)
+    facts = Facts(file)
+    text = (
+        counted(len(found), "point")
+        if isinstance(found, Survey)
+        else f"a TIN of {counted(len(found.triangles), 'triangle')}"
+    )
+    facts.add("Read", f"{text} from {name_file(file)}")
+    facts.extend(summarise_reading(found))
+    if note := note_assumed_unit(found):
+        facts.add("Elevation", note)
+    paths = [split_output(path)[0] for path in job.outputs]
+    facts.add("Written", "\n".join(map(describe_file, paths)), outputs=list(map(str, paths)))
+    job.console.summarise(facts.lines)
+    if job.console.as_json:
+        job.console.emit_record(facts.values)
+
+
+def _make_raster(survey: Survey, path: Path) -> Raster:
+    from ....base.errors import PointsError
+    from ....io.raster.gridded import make_raster
+
+    try:
+        return make_raster(survey)
+    except PointsError as error:
+        way = "'tinsmith raster' makes one of their surface."
+        raise Failure(f"Cannot write '{path}': {error} {way}") from error

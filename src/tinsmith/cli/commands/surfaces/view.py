@@ -1,0 +1,124 @@
+"""``tinsmith view``: a picture or a window in 3D."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from ...command import command
+from ...job import Job, surface_options
+from ...options import CONSOLE, READING, TRIANGULATING
+from ...output.facts import Facts
+from ...output.failures import note_written, report_warning
+from ...parameters import file_option, input_files, parsed, picture_option
+from ...paths import INPUT, Named, describe_inputs, make_title
+from ...product_options import product_options
+
+if TYPE_CHECKING:
+    from ....tin import Survey
+
+_MOST_CELLS = 1_000_000
+_UNNAMED = "Terrain surface"
+_PREVIEW = "terrain.viewer.presentation.preview"
+
+
+@parsed
+def _parse_size(flag: str, value: str) -> tuple[int, int]:
+    """Return width and height, given as 1600x1000 or 1600,1000."""
+    found = re.fullmatch(r"\s*(\d{1,9})\s*[xX,\N{MULTIPLICATION SIGN}]\s*(\d{1,9})\s*", value)
+    if found is None:
+        raise click.UsageError(
+            f"Invalid {flag} '{value}': it must be width and height, such as 1600x1000."
+        )
+    return int(found[1]), int(found[2])
+
+
+@command
+@input_files("files")
+@picture_option("Page (.html) or picture (.png, .jpg, .tif) to write instead of opening a window.")
+@product_options(_PREVIEW, "exaggeration edges lines")
+@click.option("--top", is_flag=True, help="View from vertically above, north up.")
+@file_option(
+    "--ortho",
+    "Orthophoto to drape over the surface: a GeoTIFF in any CRS, or another georeferenced image.",
+    type=INPUT,
+)
+@product_options(_PREVIEW, "azimuth tilt")
+@click.option(
+    "--full",
+    is_flag=True,
+    help="Show every cell of a large raster; default a sample of a million, or half as many in a "
+    "page.",
+)
+@click.option("--title", metavar="TEXT", help="Title of the picture; default the name of the file.")
+@click.option(
+    "--size",
+    metavar="WIDTHxHEIGHT",
+    callback=_parse_size,
+    help="Pixels of a picture or window; default 1600x1000.",
+)
+@product_options(_PREVIEW, "dpi sun background elevations tint contours")
+@surface_options(READING, TRIANGULATING, CONSOLE)
+def view(
+    files: tuple[Path, ...],
+    output: Path | None,
+    ortho: Path | None,
+    full: bool,
+    job: Job,
+    **drawing: Any,
+) -> None:
+    """Show the TIN in FILES, or built from the points in them, in 3D.
+
+    Example:
+      tinsmith view sample_data/site_survey.csv --crs EPSG:32616 --codes -o site.html
+    """
+    from ....terrain import preview
+    from ....terrain.viewer.presentation import PREVIEW_SUFFIXES
+    from ...outputs import describe_file, require_picture
+
+    more = [] if ortho is None else [Named(ortho, "the picture to drape")]
+    if output is not None:
+        inputs = job.list_inputs(*files, more=more)
+        require_picture(output, "--output", inputs, PREVIEW_SUFFIXES)
+    if not full and "stride" not in job.reading.options:
+        # Half as many for a page: pages are sent by mail.
+        is_page = output is not None and output.suffix.lower().startswith(".htm")
+        job = job.with_fallback(most_cells=_MOST_CELLS // 2 if is_page else _MOST_CELLS)
+    tin, survey = job.read_surface(*files)
+    sample = None if survey is None else _describe_sample(survey)
+    drawing["view"] = "top" if drawing.pop("top") else "oblique"
+    drawing["title"] = drawing["title"] or make_title(files[0])
+    drawing = {name: value for name, value in drawing.items() if value is not None}
+    if sample is not None:
+        job.console.summarise([("Sampled", f"{sample} are shown; --full shows all")])
+        drawing["title"] = f"{drawing['title'] or _UNNAMED} ({sample})"
+    with job.step("Drawing"):
+        shown = preview(tin, survey=survey, ortho=ortho, **drawing)
+        if output is None:
+            shown.show()
+        else:
+            shown.save(output)
+    for note in shown.notes:
+        if note not in job.console.notes:
+            report_warning(note)
+    if output is not None:
+        note_written(output)
+        facts = Facts(input=describe_inputs(files))
+        facts.add("Written", describe_file(output), output=str(output))
+        job.console.summarise(facts.lines)
+        if sample is not None:
+            facts.record(sample=sample)
+        if job.console.as_json:
+            job.console.emit_record(facts.values)
+
+
+def _describe_sample(survey: Survey) -> str | None:
+    """Return how many cells of a raster were read, if not all were."""
+    from ....io.raster.dem import LEFT_OUT
+
+    left_out = survey.skipped.get(LEFT_OUT, 0)
+    read = len(survey.points) + survey.skipped.get("nodata cells", 0)
+    return f"{read:,} of {read + left_out:,} cells" if left_out else None
