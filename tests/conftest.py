@@ -40,6 +40,7 @@ def can_draw():
 
 def pytest_collection_modifyitems(config, items):
     each_value.mark_other_cases(items)
+    each_value.mark_later_cases(items)
     left_out = [name for name in ("proof", "slow") if name not in config.option.markexpr]
     left = {item for name in left_out for item in items if item.get_closest_marker(name)}
     config.hook.pytest_deselected(items=[item for item in items if item in left])

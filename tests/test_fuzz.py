@@ -61,6 +61,7 @@ def test_a_planted_failure_is_found_minimised_and_replayed(tmp_path):
     assert fuzz(*planted, *only, find["number"]).returncode == 1
 
 
+@pytest.mark.slow
 def test_the_other_cases_at_the_place_of_a_find_are_noted(tmp_path):
     done, (find,), _ = run_planted(tmp_path, "fails", "--cases", 60)
     row = next(line for line in done.stdout.splitlines() if line.startswith("fails"))

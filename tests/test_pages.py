@@ -150,6 +150,7 @@ def test_commands_of_the_pages_run(page, folder, can_draw):
         assert all(split_output(folder / name)[0].exists() for name in outputs), command
 
 
+@pytest.mark.slow
 @LOSSES
 @pytest.mark.parametrize("page", [*filter(list_sessions, PAGES)], ids=name_page)
 def test_what_commands_say_is_what_the_pages_show(page, folder, can_draw):

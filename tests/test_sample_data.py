@@ -153,6 +153,7 @@ def source_grid():
     )
 
 
+@pytest.mark.slow
 def test_dem_is_made_again(tmp_path):
     """Pixels, not bytes: the compressor belongs to the GDAL that happens to be installed."""
     rasterio = pytest.importorskip("rasterio")

@@ -187,6 +187,7 @@ def test_a_wrong_answer_of_an_exact_tool_is_a_failure():
 # ------------------------------------------------------------------------- kernel
 
 
+@pytest.mark.slow
 def test_every_tool_triangulates():
     outcome = kernel.run([("raster", 300)], repeats=2)
     found = {result.tool: result for result in outcome.results}
@@ -274,6 +275,7 @@ def test_nested_rings_lie_each_in_the_next():
     assert (np.diff(heights) < 0).all()
 
 
+@pytest.mark.slow
 def test_steps_of_raster_lines_are_cut_where_points_are_on_them_exactly():
     task = make_lines("raster lines", N)
     exact = [[Fraction(x), Fraction(y)] for x, y in task.vertices.tolist()]
@@ -397,6 +399,7 @@ def test_tools_take_turns():
     assert {len(seconds) for seconds in runs.values()} == {2}
 
 
+@pytest.mark.first_cases(2)
 @pytest.mark.parametrize(
     ("run", "tasks"),
     [
@@ -453,6 +456,7 @@ def test_the_page_has_a_part_for_every_section():
     assert list(page.SECTIONS) == list(SECTIONS)
 
 
+@pytest.mark.slow
 def test_report_is_a_page_data_and_a_plot(tmp_path, capsys):
     arguments = ["kernel", "writers", "--points", "300", "--only", "circle", "--repeats", "1",
                  "--tools", OURS, KERNEL, "--output", str(tmp_path)]  # fmt: skip

@@ -588,7 +588,11 @@ def test_every_command_is_compared():
     assert set(AGREEMENTS) | NO_SURFACE == set(SUMMARIES)
 
 
-CASES = [(name, k) for name, found in AGREEMENTS.items() for k in range(len(found))]
+CASES = [
+    pytest.param(name, k, marks=[pytest.mark.slow] * (k > 0))
+    for name, found in AGREEMENTS.items()
+    for k in range(len(found))
+]
 
 
 @pytest.mark.parametrize(("command", "k"), CASES)

@@ -84,6 +84,7 @@ def test_sampled_points_keep_their_order():
     assert len(taken) == 200
 
 
+@pytest.mark.slow
 def test_picture_marks_what_is_at_fault(tmp_path):
     table, picture = tmp_path / "points.csv", tmp_path / "out.png"
     np.savetxt(table, np.random.default_rng(1).random((75, 3)), delimiter=",", header="x,y,z")
@@ -107,6 +108,7 @@ def share(pixels, color):
     return (np.abs(pixels - wanted) <= 2).all(axis=-1).mean()
 
 
+@pytest.mark.slow
 def test_picture_is_the_same_bytes_every_time(few, tmp_path):
     paths = [tmp_path / "a.png", tmp_path / "b.png"]
     for path in paths:

@@ -163,6 +163,7 @@ def piped(command, text, *arguments):
     )
 
 
+@pytest.mark.first_cases(2)
 @pytest.mark.parametrize(
     "command",
     [
@@ -191,6 +192,7 @@ def test_a_named_pipe_is_read_from_its_first_byte_in_python(folder):
     assert survey.source == "pipe.xyz"
 
 
+@pytest.mark.slow
 def test_lines_and_scripts_come_from_pipes(folder):
     pytest.importorskip("pyogrio")
     result = piped(

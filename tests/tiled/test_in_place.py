@@ -363,6 +363,7 @@ def test_blocks_are_held_up_to_a_number_of_points(tmp_path):
     assert held == in_place._HELD._count
 
 
+@pytest.mark.slow
 def test_threads_share_blocks(tmp_path):
     store, points = read_counted(tmp_path)
     wrong = []

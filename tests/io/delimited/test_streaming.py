@@ -56,7 +56,7 @@ SOUND = {
 @pytest.mark.parametrize("case", SOUND)
 def test_blocks_are_the_whole(tmp_path, small_blocks, case):
     lines, options = SOUND[case]
-    require_same(write(tmp_path, lines), **options)
+    require_same(write(tmp_path, lines), chunks=(1, 1000), **options)
 
 
 @pytest.mark.each_value

@@ -231,6 +231,7 @@ def test_pages_that_another_program_changed_are_left_to_it(tmp_path, statement):
         assert read_columns(file, root, [21, 0]) is None
 
 
+@pytest.mark.slow
 def test_what_is_no_table_is_left_to_sqlite(tmp_path):
     path = tmp_path / "a.db"
     root = make_file(path, 512)

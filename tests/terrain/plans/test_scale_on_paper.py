@@ -82,6 +82,7 @@ def test_contours_are_broken_where_their_labels_stand(site_page):
         assert lines.distance(shapely.Point(center)) > 0.7
 
 
+@pytest.mark.slow
 def test_everything_lies_within_the_frame(site, tmp_path):
     made = ts.plan(site[1], scale=500, paper="A4", interval=0.5, layout="rows")
     low, high = np.array([14.0, 54.0]), np.array([283.0, 196.0])
@@ -118,6 +119,7 @@ def test_water_is_filled_with_its_area(site, site_page):
     assert shapely.Polygon(lake).area == pytest.approx(area, rel=1e-6)
 
 
+@pytest.mark.first_cases(2)
 @pytest.mark.parametrize(
     ("paper", "points"),
     [
@@ -139,6 +141,7 @@ def test_pages_have_the_size_of_the_paper(paper, points, tmp_path):
     assert (page.width, page.height) == pytest.approx(np.array(points) * 25.4 / 72, abs=1e-3)
 
 
+@pytest.mark.first_cases(2)
 @pytest.mark.parametrize(
     ("crs", "scale", "metres"),
     [

@@ -105,6 +105,7 @@ def test_every_sheet_is_true_to_scale_however_it_is_turned(layout, tmp_path):
     assert labels > 10
 
 
+@pytest.mark.slow
 def test_north_arrows_point_north_on_turned_sheets(tmp_path):
     tin, _ = corridor()
     made = ts.plan(tin, scale=1000, layout="strips")
@@ -120,6 +121,7 @@ def test_north_arrows_point_north_on_turned_sheets(tmp_path):
     assert len(angles) > 3
 
 
+@pytest.mark.slow
 def test_match_lines_are_the_same_on_both_sheets(tmp_path):
     tin, _ = corridor()
     made = ts.plan(tin, scale=1000, layout="strips")

@@ -149,6 +149,7 @@ def test_the_exaggeration_of_strips_goes_by_the_relief_within_one():
     assert make_scene(corridor(), PreviewOptions.of(exaggeration=7.0)).exaggeration == 7.0
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("can_draw")
 def test_each_strip_shows_its_own_part(tmp_path):
     """Tints rise from strip to strip, and each strip is as long and wide as the scale says."""

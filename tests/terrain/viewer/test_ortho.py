@@ -437,6 +437,7 @@ def test_the_picture_lies_right_in_a_png(tmp_path):
         assert np.abs(np.subtract(frames[name], frame)).max() <= 1.0
 
 
+@pytest.mark.slow
 def test_a_png_keeps_the_tints_beyond_the_picture(tmp_path):
     pil = pytest.importorskip("PIL.Image")
     pytest.importorskip("pyvista")

@@ -91,6 +91,7 @@ def test_oracle_without_segments_is_delaunay():
         assert oracle.constrained_delaunay(case.points, []) == oracles.delaunay(case.points)
 
 
+@pytest.mark.slow
 def test_definition_and_flips_agree():
     rng = np.random.default_rng(2)
     differ = 0

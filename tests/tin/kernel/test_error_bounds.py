@@ -13,6 +13,7 @@ ROOT = Path(os.environ.get("TINSMITH_SOURCES", Path(__file__).parents[3]))  # or
 COMPILER = os.environ.get("CXX") or "g++"
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(shutil.which(COMPILER) is None, reason="needs a C++ compiler")
 def test_errors_of_cotangents_stay_within_their_bounds_and_come_near_them(tmp_path):
     program = tmp_path / "cotangent_errors"

@@ -99,6 +99,7 @@ def test_places_on_long_slanting_edges():
     require_as_oracle(np.concatenate([xy, ring, np.nextafter(xy, np.inf)]), [ring])
 
 
+@pytest.mark.slow
 def test_many_nested_rings_like_contours():
     rings = [circle(60, radius, UTM) for radius in np.linspace(1, 100, 20)]
     rng = np.random.default_rng(4)

@@ -179,6 +179,7 @@ def test_as_many_triangles_may_still_not_be_delaunay():
     assert found.violating.any()
 
 
+@pytest.mark.slow
 def test_growth_that_breeds_is_stopped_and_says_so(compared):
     points = random_points(100, 46)
     found = compare(points).outcomes[1]
@@ -198,6 +199,7 @@ def test_to_dict_is_plain_and_adds_up(compared):
         assert one["memory"] > outcome.triangles.nbytes
 
 
+@pytest.mark.slow
 def test_memory_grows_with_what_is_kept():
     small, large = (compare(random_points(n)).outcomes[0].memory for n in (20, 160))
     assert large > 4 * small

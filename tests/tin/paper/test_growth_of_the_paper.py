@@ -227,6 +227,7 @@ def test_closest_in_circle_is_not_always_delaunay():
     assert violating(paper.original(flat(CLOSEST_IS_NOT_DELAUNAY))) == []
 
 
+@pytest.mark.slow
 def test_no_four_points_contradict_closest_in_circle():
     """Five points are the fewest: with four, an edge never has two points to choose from."""
     for four in itertools.combinations(itertools.product(range(3), range(4)), 4):
@@ -320,6 +321,7 @@ def test_delaunay_has_the_largest_smallest_angle_but_not_the_largest_sum_of_them
 # ------------------------------------------------------------------ removal
 
 
+@pytest.mark.first_cases(1)
 @pytest.mark.parametrize("n", [50, 400])
 def test_removal_lowers_the_candidates_and_changes_no_triangle(n):
     points = random_points(n, 1)

@@ -52,6 +52,7 @@ def test_every_residual_is_that_of_a_surface_built_without_the_point(kind):
     assert told > (5 if kind is on_a_circle else 50)  # all of a circle are on the hull
 
 
+@pytest.mark.slow
 def test_lines_beside_a_point_are_kept_when_it_is_left_out():
     rng = np.random.default_rng(3)
     for _ in range(20):
