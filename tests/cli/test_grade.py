@@ -114,3 +114,46 @@ def test_a_pad_that_does_not_tell_its_unit_is_no_pad_in_feet(tmp_path, ground_in
     assert done.exit_code == 1, done.output
     assert "does not tell the unit of its elevations" in done.stderr
     assert not (tmp_path / "made.ply").exists()
+
+
+SITE_OPTIONS = ("--crs", "EPSG:32616", "--elevation-unit", "m")
+
+
+def test_a_pad_in_balance_is_told_and_written(tmp_path, pad):
+    outputs = ("-o", tmp_path / "graded.ply", "-o", tmp_path / "pad.csv")
+    more = ("--balance", "--shrink-factor", 0.9, "--swell-factor", 1.25, "--gradient", "0.02,0")
+    done = run("grade", SITE, *SITE_OPTIONS, "--pad", pad, *more, *SLOPES, *outputs, "--json")
+    assert done.exit_code == 0, done.output
+    told = json.loads(done.stdout)["balance"]
+    ground = ts.triangulate(ts.read(SITE, crs="EPSG:32616", elevation_unit="m"))
+    found = ts.balance(
+        ground,
+        PAD,
+        cut_slope=2,
+        fill_slope=3,
+        gradient=(0.02, 0.0),
+        shrink_factor=0.9,
+        swell_factor=1.25,
+    )
+    for name in ("elevation", "cut", "fill", "sensitivity", "haul"):
+        assert told[name] == pytest.approx(found.table[name][0], rel=1e-9), name
+    assert "m³ less for each cm higher" in done.stderr
+    assert "elevation (m)" in (tmp_path / "pad.csv").read_text(encoding="utf-8")
+    assert len(ts.read(tmp_path / "graded.ply").points) == len(found.tin.points)
+
+
+@pytest.mark.parametrize(
+    ("options", "text"),
+    [
+        (("--balance", "--elevation", 327), "--elevation and --balance are both given"),
+        (("--elevation", 327, "--shrink-factor", 0.9), "--shrink-factor is for --balance"),
+        (("--balance", "--shrink-factor", 0), "--shrink-factor"),
+        (("--elevation", 327, "--gradient", "0.9,0"), "--gradient"),
+    ],
+)
+def test_what_cannot_be_balanced_is_refused(tmp_path, pad, options, text):
+    out = tmp_path / "graded.ply"
+    done = run("grade", SITE, *SITE_OPTIONS, "--pad", pad, *options, *SLOPES, "-o", out)
+    assert done.exit_code == 2, done.output
+    assert text in done.stderr
+    assert not out.exists()

@@ -159,4 +159,50 @@ def _require_base_beyond(base: Any, made: Any, area: Any) -> None:
     assert (error <= slack[apart]).all(), "the base is another one beyond"
 
 
-CAMPAIGNS = (Campaign("grading", "pasted surfaces, and pads with slopes", generate, examine),)
+def generate_balance(rng: np.random.Generator) -> Case:
+    """A rough ground, a convex pad in its middle, level or inclined, and factors."""
+    origin = [500_000.0, 4_000_000.0] if rng.random() < 0.5 else [0.0, 0.0]
+    xy = np.concatenate([rng.uniform(0, 40, (60, 2)), [[0, 0], [40, 0], [40, 40], [0, 40]]])
+    slope = rng.normal(0, 0.04, 2)
+    z = xy @ slope + rng.normal(0, float(rng.choice([0.0, 0.1, 0.4])), len(xy))
+    pad = 17 + 6 * rng.random((int(rng.integers(3, 7)), 2))
+    return {
+        "base": np.column_stack([xy + origin, z]).tolist(),
+        "pad": (pad + origin).tolist(),
+        "gradient": rng.normal(0, 0.05, 2).tolist() if rng.random() < 0.5 else None,
+        "cut_slope": float(rng.choice([0.5, 1, 2])),
+        "fill_slope": float(rng.choice([0.5, 1, 2])),
+        "shrink_factor": float(rng.choice([1.0, 0.8, 1.1])),
+        "surplus": float(rng.choice([0.0, 0.0, 4.0, -4.0])),
+    }
+
+
+def examine_balance(case: Case) -> str:
+    """Ask for a pad in balance, as measured again in the graded ground."""
+    names = ("gradient", "cut_slope", "fill_slope", "shrink_factor", "surplus")
+    try:
+        base = ts.triangulate(case["base"])
+        hull = shapely.convex_hull(shapely.multipoints(case["pad"]))
+        ring = shapely.get_coordinates(hull)[:-1]
+        found = ts.balance(base, ring, **{name: case[name] for name in names})
+    except ts.PointsError as error:
+        return "refused: " + ("jump" if "another part" in str(error) else "ground ends")
+    except (ts.LinesError, ts.OptionError):
+        return "refused: pad"
+    _require_sound(base, found.tin)
+    table = {name: float(values[0]) for name, values in found.table.columns.items()}
+    again = ts.volume(base, found.tin)
+    moved = table["cut"] + table["fill"]
+    for name in ("cut", "fill"):
+        apart = abs(float(again[name][0]) - table[name])
+        assert apart <= 1e-6 * moved + 1e-6, f"{name}: off by {apart} when measured again"
+    rest = table["cut"] * case["shrink_factor"] + case["surplus"] - table["fill"]
+    assert abs(rest - table["balance"]) <= 1e-9 * moved + 1e-12
+    assert abs(rest) <= 1e-4 * moved + 1e-6 * table["sensitivity"], f"{rest} remain"
+    return "inclined" if case["gradient"] else "level"
+
+
+CAMPAIGNS = (
+    Campaign("grading", "pasted surfaces, and pads with slopes", generate, examine),
+    Campaign("balances", "pads whose cut makes their fill", generate_balance, examine_balance),
+)

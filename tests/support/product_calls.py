@@ -58,6 +58,7 @@ RESULTS = {
     "to_features": ts.to_features,
     "viewshed": lambda tin: ts.viewshed(tin, PLACE, eye_height=2.0),
     "volume": lambda tin: ts.volume(tin, base=318.0),
+    "balance": lambda tin: ts.balance(tin, RING, cut_slope=2.0, fill_slope=2.0),
     # surfaces
     "merge": lambda tin: ts.merge([ts.triangulate(add_height(RING, 330), crs=HILL.crs), tin]),
     "clip": lambda tin: ts.clip(tin, [RING]),

@@ -34,6 +34,8 @@ _ENOUGH = 1e-9
 """Of what is moved: less is in balance."""
 _NEAR = 1e-7
 """In units of elevations: trials are no nearer to each other."""
+_NEAR_LOST = 1e-4
+"""The same where the ground ends before slopes that start higher, or lower, do."""
 _MOST_TRIALS = 60
 _JUMP = 1e-4
 """Of what is moved: more that remains is a jump, where slopes begin to reach another part."""
@@ -220,40 +222,41 @@ def _find_root(
 
     ``area`` of the pad is the least by which it falls. Raises PointsError if there is none.
     """
-    low, high = -np.inf, np.inf  # balances above and below 0
+    low, high = -np.inf, np.inf  # balances above and below 0, or what the ground does not allow
     found, at = attempt(level), level
-    lost: PointsError | None = None
-    best = (abs(found.balance), at, found)
+    best, lost = (at, found), None
     for number in range(_MOST_TRIALS):
         done(1.0 - 0.5**number)
         if abs(found.balance) <= _ENOUGH * found.moved:
             break
         low, high = (at, high) if found.balance > 0 else (low, at)
-        level = at + found.balance / max(found.slope, 0.5 * area)
+        most = float(np.sqrt(area))
+        step = found.balance / max(found.slope, 0.5 * area)
+        level = at + min(max(step, -most), most)
         if not low < level < high:
             level = 0.5 * (low + high)
-        while True:
-            if abs(level - at) <= _NEAR or high - low <= _NEAR:
-                return _accept(best, low, high, lost)
+        tried = None
+        while tried is None and abs(level - at) > (_NEAR if lost is None else _NEAR_LOST):
             try:
-                found, at = attempt(level), level
-                break
+                tried = attempt(level)
             except PointsError as error:  # the ground ends before the slopes do: not so far
                 lost = error
+                low, high = (low, level) if level > at else (level, high)
                 level = 0.5 * (level + at)
-        if abs(found.balance) < best[0]:
-            best = (abs(found.balance), at, found)
-    return _accept(best, low, high, lost)
+        if tried is None:
+            break
+        found, at = tried, level
+        if abs(found.balance) < abs(best[1].balance):
+            best = (at, found)
+    return _accept(*best, lost)
 
 
-def _accept(
-    best: tuple[float, float, Trial], low: float, high: float, lost: PointsError | None
-) -> tuple[float, Trial]:
+def _accept(level: float, found: Trial, lost: PointsError | None) -> tuple[float, Trial]:
     """Return the best trial, if it is in balance but for what trials are apart."""
-    rest, level, found = best
+    rest = abs(found.balance)
     if rest <= max(_JUMP * found.moved, 2.0 * _NEAR * found.slope):
         return level, found
-    if lost is not None and not (np.isfinite(low) and np.isfinite(high)):
+    if lost is not None:
         raise PointsError(f"No elevation that the ground allows is in balance: {lost}") from lost
     raise PointsError(
         f"No elevation is in balance: at {height(level)} {rest:.6g} cubic units remain, where the "
