@@ -23,7 +23,7 @@ def main(folder: Path = HERE) -> None:
     corners = middle + np.array([[-1500, -700], [-400, -300], [200, 500], [1400, 700]])
     road = ts.Alignment.from_points(corners, radii=[300, 250], transitions=[80, 60], crs=ground.crs)
     table = ts.section_volumes(
-        ground, _make_bed(ground, road), road, interval=20, width=24, cut_factor=1.1
+        ground, _make_bed(ground, road), road, interval=20, width=24, shrink_factor=0.9
     )
     figure = ts.mass_haul_picture(table, title="Mass haul of a road through the sample hills")
     figure.savefig(folder / "mass_haul.png", dpi=100, metadata={"Software": None})

@@ -43,8 +43,8 @@ def section_volumes(
     left: float | None = None,
     right: float | None = None,
     start: float = 0.0,
-    cut_factor: float = 1.0,
-    fill_factor: float = 1.0,
+    shrink_factor: float = 1.0,
+    swell_factor: float = 1.0,
     threads: int | None = None,
     progress: Callable[[float], None] | None = None,
 ) -> Table:
@@ -58,11 +58,10 @@ def section_volumes(
         One line, CRS units.
     interval, stations, width, left, right, start
         Where sections are, and how far they reach, as of :func:`tinsmith.cross_sections`.
-    cut_factor : float
-        What becomes of one unit of cut when it is placed: above 1 where it swells, below where it
-        shrinks.
-    fill_factor : float
-        How much of what is cut and placed one unit of fill takes.
+    shrink_factor : float
+        Volume of compacted fill that a volume of cut makes: 0.9 where a tenth is lost.
+    swell_factor : float
+        Loose volume to haul of a volume of cut, such as 1.25. It does not count in the mass.
     threads : int, optional
         Default every core, where it pays. The result is the same.
     progress : callable, optional
@@ -76,9 +75,9 @@ def section_volumes(
         one ``cut_volume`` and ``fill_volume``, between both surfaces as they are,
         ``cut_end_area`` and ``fill_end_area``, by the mean of both areas, ``cut_prismoidal`` and
         ``fill_prismoidal``, by Simpson's rule with the section half-way; ``cut_total`` and
-        ``fill_total`` from the first section on; ``mass``, the ordinate of mass haul:
-        ``cut_total`` times its factor, less ``fill_total`` times its own. Areas and volumes are in
-        the CRS's unit squared and cubed.
+        ``fill_total`` from the first section on; ``mass``, the ordinate of mass haul: ``cut_total``
+        times ``shrink_factor`` less ``fill_total``; ``loose``, ``cut_total`` times
+        ``swell_factor``. Areas and volumes are in the CRS's unit squared and cubed.
 
     Raises
     ------
@@ -115,7 +114,7 @@ def section_volumes(
     done = Progress(progress)
     factors = [
         as_number(name, value, above=0)
-        for name, value in (("cut_factor", cut_factor), ("fill_factor", fill_factor))
+        for name, value in (("shrink_factor", shrink_factor), ("swell_factor", swell_factor))
     ]
     reference, _, _ = find_common_reference(ground, design, "Volumes")
     axis = as_axis(centreline, reference.crs, start, "centreline")
@@ -151,7 +150,8 @@ def section_volumes(
         ("total", totals),
     ):
         columns |= _name(word, np.concatenate([np.zeros((1, 2)), values]))
-    columns["mass"] = columns["cut_total"] * factors[0] - columns["fill_total"] * factors[1]
+    columns["mass"] = columns["cut_total"] * factors[0] - columns["fill_total"]
+    columns["loose"] = columns["cut_total"] * factors[1]
     done.end()
     return Table(
         columns,

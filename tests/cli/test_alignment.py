@@ -54,11 +54,11 @@ def test_elements_points_and_offsets_are_those_of_the_library(road):
 def test_quantities_are_those_of_the_library(road):
     said = run(
         *("sections", "ground.gpkg", "design.gpkg", "--line", "road.xml", "--interval", 20),
-        *("--width", 12, "--cut-factor", 1.2, "-o", "q.csv", "-o", "q.png"),
+        *("--width", 12, "--shrink-factor", 0.9, "-o", "q.csv", "-o", "q.png"),
     )
     surfaces = [ts.read_tin(f"{name}.gpkg") for name in ("ground", "design")]
     table = ts.section_volumes(
-        *surfaces, ts.read_alignment("road.xml"), interval=20, width=12, cut_factor=1.2
+        *surfaces, ts.read_alignment("road.xml"), interval=20, width=12, shrink_factor=0.9
     )
     found = np.genfromtxt("q.csv", delimiter=",", skip_header=1)
     np.testing.assert_array_equal(found, np.column_stack(list(table.columns.values())))

@@ -30,8 +30,10 @@ class SectionsAlgorithm(CommandAlgorithm):
             "WIDTH", "Width of sections", "--width", "Half of it to either side.", 30.0, least=0.0
         ),
         number("START", "Station where the axis begins", "--start", "", 0.0, advanced=True),
-        number("CUT_FACTOR", "Factor of cut", "--cut-factor", "Above 1 it swells.", 1.0, least=0.0),
-        number("FILL_FACTOR", "Factor of fill", "--fill-factor", "", 1.0, least=0.0, advanced=True),
+        number(
+            "SHRINK", "Compacted fill of a volume of cut", "--shrink-factor", "", 1.0, least=0.0
+        ),
+        number("SWELL", "Loose volume of a volume of cut", "--swell-factor", "", 1.0, least=0.0),
     )
 
     def add_outputs(self) -> None:

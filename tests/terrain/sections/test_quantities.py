@@ -69,10 +69,11 @@ def test_totals_do_not_depend_on_the_sections():
 def test_factors_of_swell_and_shrinkage_weigh_the_masses():
     design = plane(lambda x, y: x / 10)
     line = [[-50, 0], [50, 0]]
-    how = {"interval": 25, "width": 4, "cut_factor": 1.25, "fill_factor": 1.1}
+    how = {"interval": 25, "width": 4, "shrink_factor": 0.9, "swell_factor": 1.25}
     table = ts.section_volumes(LEVEL, design, line, **how)
-    expected = 1.25 * table["cut_total"] - 1.1 * table["fill_total"]
+    expected = 0.9 * table["cut_total"] - table["fill_total"]
     np.testing.assert_allclose(table["mass"], expected)
+    np.testing.assert_allclose(table["loose"], 1.25 * table["cut_total"])
 
 
 def test_balanced_stations_are_told():
@@ -109,7 +110,7 @@ def test_written_stations_stand_beside_the_lengths():
 @pytest.mark.parametrize(
     ("how", "words"),
     [
-        ({"interval": 10, "width": 4, "cut_factor": 0}, "cut_factor"),
+        ({"interval": 10, "width": 4, "shrink_factor": 0}, "shrink_factor"),
         ({"interval": 10}, "width"),
         ({"width": 4}, "interval"),
         ({"stations": [5.0], "width": 4}, "between two"),

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 @axis_options("LandXML, DXF or vector file of the axis.")
 @product_options(
     "terrain.sections.quantities.section_volumes",
-    "interval width left right start cut_factor fill_factor",
+    "interval width left right start shrink_factor swell_factor",
     interval="A section at every multiple of it, and at both ends.",
     width="Of the sections, half of it to either side.",
     left="How far sections reach to the left instead.",
