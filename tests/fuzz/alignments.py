@@ -20,7 +20,7 @@ ORDINATES = ("cubic parabola", "sine half-wave")
 
 def generate(rng: np.random.Generator) -> Case:
     """Up to eight elements from a place of any size, points around them, and a damage."""
-    size = float(10.0 ** rng.integers(0, 7))
+    size = float(10.0 ** rng.integers(0, 6))  # around a place where the CRS applies
     parts: list[Any] = []
     for _ in range(int(rng.integers(1, 9))):
         kind = str(rng.choice(["line", "arc", *LAWS, *ORDINATES]))
@@ -40,7 +40,7 @@ def generate(rng: np.random.Generator) -> Case:
         if kind != "arc":  # an axis whose transitions are spirals of many turns is none
             length = min(length, 4.0 / max(1e-9, *map(abs, bent)))
         parts.append([kind, length, *bent])
-    start = [float(v) for v in rng.uniform(-size, size, 2)]
+    start = [float(v) for v in np.array([5e5, 4e6]) + rng.uniform(-size, size, 2)]
     return {
         "start": start,
         "direction": float(rng.uniform(-4, 4)),
