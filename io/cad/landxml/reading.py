@@ -171,8 +171,10 @@ def _choose_content(found: Content, chosen: Surface | None) -> str:
         return "source"
     if has_points:
         return "points"
+    count = found.others.get("alignment", 0)
+    hint = f" It has {counted(count, 'alignment')}: see read_alignment." if count else ""
     raise ReadError(
-        f"{FILE} has neither a surface with visible faces, nor source data or survey points."
+        f"{FILE} has neither a surface with visible faces, nor source data or survey points.{hint}"
     )
 
 

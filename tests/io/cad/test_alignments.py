@@ -73,6 +73,11 @@ def test_all_alignments_of_land_desktop_are_read_by_name_and_number():
         ts.read_alignment(LAND_DESKTOP, "9thave")
 
 
+def test_a_file_of_alignments_alone_says_what_reads_them():
+    with pytest.raises(ts.ReadError, match="6 alignments: see read_alignment"):
+        ts.read(LAND_DESKTOP)
+
+
 def test_a_vertical_alignment_whose_curves_overlap_is_left_out_and_told():
     road = ts.read_alignment(LAND_DESKTOP, "loop")
     assert not road.verticals
