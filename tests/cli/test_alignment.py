@@ -80,6 +80,7 @@ def test_profiles_run_along_an_alignment(road):
         (["alignment", "road.xml", "--at", "at.csv", "--interval", 5], "choose one"),
         (["alignment", "road.xml", "--crs", "EPSG:32617"], "no arcs there"),
         (["alignment", "road.xml", "-o", "road.xml"], "input"),
+        (["alignment", "road.xml", "--tolerance", 0, "-o", "road.gpkg"], "--tolerance"),
         (["sections", "ground.gpkg", "design.gpkg"], "--line FILE"),
         (["sections", "ground.gpkg", "design.gpkg", "--line", "road.xml"], "--interval"),
         (

@@ -41,7 +41,8 @@ _SHOWN = 40
 @number_option("--interval", "LENGTH", "Write points at multiples of it, and where elements meet.")
 @number_option("--offset", "LENGTH", "Of these points: to the right, negative to the left.")
 @number_option(
-    "--tolerance", "LENGTH", "How far a polyline that is written may lie from curves [0.001]."
+    *("--tolerance", "LENGTH", "How far a polyline that is written may lie from curves."),
+    default=0.001,
 )
 @crs_option("--crs", "CRS of coordinates, where the file does not name it; nothing is reprojected.")
 @click.option("--unit", metavar="UNIT", help="Unit of all lengths, where the file does not say.")
@@ -68,7 +69,7 @@ def alignment(file: Path, points_file: Path | None, job: Job, **asked: Any) -> N
     road = read_axis(file, asked["alignment"], **chosen)
     table = _make_table(road, points_file, asked)
     planned.write("Table", table)
-    planned.write("Features", lambda: road.to_features(asked["tolerance"] or 0.001))
+    planned.write("Features", lambda: road.to_features(asked["tolerance"]))
     planned.write("Alignment", road)
     job.finish(planned, _list_facts(file, road, table))
 
