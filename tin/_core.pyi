@@ -193,6 +193,7 @@ def refine(
     largest_area: float,
     longest_edge: float,
     most: int,
+    threads: int,
     progress: Callable[[float], None] | None = None,
 ) -> Refined: ...
 
@@ -200,7 +201,11 @@ class Refined:
     points: Final[Float64Array]
     splits: Final[Int32Array]
     misses: Final[Int32Array]
+    triangles: Final[Int32Array]
+    neighbors: Final[Int32Array]
+    constrained: Final[BoolArray]
     triangle_count: Final[int]
+    has_surface: Final[bool]
     is_too_many: Final[bool]
 
 def regions(

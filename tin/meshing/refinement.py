@@ -31,7 +31,7 @@ from .surface_pslg import gather_pslg, list_rings
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from ...base.arrays import Float64Array, Int32Array, Int64Array
+    from ...base.arrays import BoolArray, Float64Array, Int32Array, Int64Array
     from ...base.progress import Tell
     from ..constraints.pslg import Pslg
 
@@ -85,7 +85,7 @@ def refine(
     max_vertices : int
         So many are allowed.
     threads : int, optional
-        For building the TIN of the points found.
+        For the arrays of the mesh, once its points are found.
     progress : callable, optional
         Called with the fraction done, ascending to 1.0, as points are found and their TIN is built.
         How many there will be is estimated. What it raises ends the call.
@@ -155,7 +155,8 @@ def refine(
     )
     kept_whole = np.empty((0, 2), np.int32)
     for attempt in range(_MOST_ATTEMPTS):
-        found = _find_points(tin, goal, kept_whole, done.stage(0.0, _FOUND))
+        workers = thread_count(threads, len(tin.points))
+        found = _find_points(tin, goal, kept_whole, workers, done.stage(0.0, _FOUND))
         done(_FOUND)
         workers = thread_count(threads, len(tin.points) + len(found.xy))
         refined = _build(tin, found, workers, done.stage(_FOUND, 1.0))
@@ -290,16 +291,22 @@ class _Found(NamedTuple):
     splits: _Splits
     left: Int32Array
     n_triangles: int
+    mesh: tuple[Int32Array, Int32Array, BoolArray] | None
+    """Triangles, neighbours and fixed edges, unless the boundary must be looked at first."""
 
 
-def _find_points(tin: TIN, goal: _Goal, kept_whole: Int32Array, progress: Tell | None) -> _Found:
+def _find_points(
+    tin: TIN, goal: _Goal, kept_whole: Int32Array, threads: int, progress: Tell | None
+) -> _Found:
     fixed = tin.constrained | (tin.neighbors == topology.NO_NEIGHBOR)
     found = _kernel.refine(
-        tin.points, tin.triangles, tin.neighbors, fixed, kept_whole, *goal, progress
+        tin.points, tin.triangles, tin.neighbors, fixed, kept_whole, *goal, threads, progress
     )
     if found.is_too_many:
         raise PointsError(_explain_too_many(goal.most_vertices))
-    return _Found(found.points, _Splits.of(found.splits), found.misses, found.triangle_count)
+    mesh = (found.triangles, found.neighbors, found.constrained) if found.has_surface else None
+    splits = _Splits.of(found.splits)
+    return _Found(found.points, splits, found.misses, found.triangle_count, mesh)
 
 
 # ------------------------------------------------------------------------- result
@@ -308,11 +315,9 @@ def _find_points(tin: TIN, goal: _Goal, kept_whole: Int32Array, progress: Tell |
 def _build(
     tin: TIN, found: _Found, threads: int, progress: Tell | None
 ) -> TIN | set[tuple[int, int]]:
-    """Build the TIN of all points, with the boundary and the lines as they were split.
+    """Make the TIN of all points, with the boundary and the lines as they were split.
 
-    The core sees the surface only. Vertices on the boundary are rounded, and beyond it, across a
-    gap as narrow as that, there can be another part of the boundary: then it returns the segments
-    of ``tin`` that are in the way of each other when they are split.
+    It is the one that the points and lines have when they are triangulated.
     """
     done = Progress(progress)
     points = np.concatenate([tin.points, _lift(tin, found.xy, found.splits)])
@@ -320,18 +325,15 @@ def _build(
     along = found.splits.along
     rings = [along(ring) for ring in list_rings(tin)]
     pslg = gather_pslg(tin, points, along, rings, names_boundary=True)
-    growth = _kernel.grow(points, threads=threads, progress=done.stage(0.2, 0.6))
-    if growth.kept_row is not None:
-        return found.splits.segments_of(np.flatnonzero(growth.kept_row != np.arange(len(points))))
-    mesh = build_mesh_of_growth(points, growth)
-    in_the_way = _force(mesh, pslg, found.splits)
-    if in_the_way is not None:
-        return in_the_way
-    done(0.7)
-    surface, number_of = pslg.surface(Triangulation(points, *mesh.arrays(threads)))
+    if found.mesh is not None:
+        surface = Triangulation(points, *found.mesh)
+        number_of = np.arange(len(points), dtype=np.int32)
+    else:
+        made = _triangulate(pslg, found, threads, done.stage(0.2, 0.9))
+        if isinstance(made, set):
+            return made
+        surface, number_of = made
     done(0.9)
-    if len(surface.points) != len(points) or len(surface.triangles) != found.n_triangles:
-        return set()
     unmended = _find_unmended(surface.points, surface.triangles, found.left)
     added = (
         f"Refinement added {counted(len(found.xy), 'point')}, "
@@ -350,6 +352,30 @@ def _build(
         lines=find_lines_in(pslg.polylines, pslg.constraints, number_of, surface, is_whole=False),
     )
     return tin._with_version(version)
+
+
+def _triangulate(
+    pslg: Pslg, found: _Found, threads: int, progress: Tell | None
+) -> tuple[Triangulation, Int32Array] | set[tuple[int, int]]:
+    """Triangulate all points, with the segments as they were split.
+
+    The core sees the surface only. Vertices on the boundary are rounded, and beyond it, across a
+    gap as narrow as that, there can be another part of the boundary: then it returns the segments
+    of the TIN that are in the way of each other when they are split.
+    """
+    done, points = Progress(progress), pslg.points
+    growth = _kernel.grow(points, threads=threads, progress=done.stage(0.0, 0.6))
+    if growth.kept_row is not None:
+        return found.splits.segments_of(np.flatnonzero(growth.kept_row != np.arange(len(points))))
+    mesh = build_mesh_of_growth(points, growth)
+    in_the_way = _force(mesh, pslg, found.splits)
+    if in_the_way is not None:
+        return in_the_way
+    done(0.7)
+    surface, number_of = pslg.surface(Triangulation(points, *mesh.arrays(threads)))
+    if len(surface.points) != len(points) or len(surface.triangles) != found.n_triangles:
+        return set()
+    return surface, number_of
 
 
 def _force(mesh: _kernel.Mesh, pslg: Pslg, splits: _Splits) -> set[tuple[int, int]] | None:

@@ -12,6 +12,7 @@ from support import oracles, surfaces
 from support.surfaces import UTM
 
 import tinsmith as ts
+from tinsmith.tin.meshing import refinement
 from tinsmith.tin.meshing.refinement import _interpolate, refine
 from tinsmith.tin.report import UNMENDED_WHY
 
@@ -210,6 +211,28 @@ def test_the_result_is_what_its_points_and_lines_give():
     fresh = ts.triangulate(refined.points, breaklines=lines, boundary=[ring])
     np.testing.assert_array_equal(fresh.points, refined.points)
     np.testing.assert_array_equal(fresh.triangles, refined.triangles)
+
+
+@pytest.mark.parametrize("make", SURFACES)
+@pytest.mark.parametrize("limits", [{"min_angle": 20}, {"min_angle": 30}, {"max_area": 6.0}])
+def test_the_triangles_of_the_core_are_those_of_all_points_triangulated(make, limits, monkeypatch):
+    own = refine(make(), **limits)
+    find, has_mesh = refinement._find_points, []
+
+    def find_points_alone(*given):
+        found = find(*given)
+        has_mesh.append(found.mesh is not None)
+        return found._replace(mesh=None)
+
+    monkeypatch.setattr(refinement, "_find_points", find_points_alone)
+    fresh = refine(make(), **limits)
+    # what lies between the parts of a boundary of several rings is not always filled
+    assert has_mesh == [make not in (with_boundary_and_hole, touching_corners, trimmed)]
+    for name in ("points", "triangles", "neighbors", "constrained"):
+        np.testing.assert_array_equal(getattr(own, name), getattr(fresh, name), err_msg=name)
+    np.testing.assert_array_equal(own.lines.vertices, fresh.lines.vertices)
+    assert own.report.notes == fresh.report.notes
+    np.testing.assert_array_equal(own.report.unmended.triangles, fresh.report.unmended.triangles)
 
 
 def test_a_refined_mesh_can_be_edited_and_refined_again():

@@ -290,6 +290,16 @@ class BasicMesh {
     free(s);
     store_.set_leaving(v, kNoHalfEdge);
   }
+  // Two triangles that have the same edge between them and the others go.
+  void drop_pair(HalfEdge e, HalfEdge f) {
+    const Side one = side(e), other = side(f);
+    free(triangle_of(e));
+    free(triangle_of(f));
+    join(one.twin, other.twin);
+    fix(one.twin, one.is_fixed || other.is_fixed);
+    keep_leaving(triangle_of(one.twin));
+    keep_leaving(triangle_of(other.twin));
+  }
 
  private:
   static constexpr std::uint8_t kMark = 8, kProven = 16;  // beyond the bits of the three edges

@@ -98,7 +98,9 @@ inline MeshEditor editor_of(const PointRows& rows, const GivenTriangles& given) 
 // vertices are numbered in the order of their slots, without gaps.
 class MeshArrays {
  public:
-  MeshArrays(const MeshEditor& editor, Team& team) : editor_(editor), mesh_(editor.mesh()) {
+  // If wished with which triangles are marked.
+  MeshArrays(const MeshEditor& editor, Team& team, bool tells_marks = false)
+      : editor_(editor), mesh_(editor.mesh()) {
     release_freed_memory();
     if (editor.count() < editor.slots()) gather_vertices();
     const Point* const points = points_.empty() ? editor.points().begin() : points_.data();
@@ -111,12 +113,14 @@ class MeshArrays {
     corners = streamed_array<std::int32_t>(size);
     neighbors = streamed_array<std::int32_t>(size);
     fixed = streamed_array<bool>(size);
+    if (tells_marks) marked = streamed_array<bool>(triangle_count);
     order.write(Triangles{corners.get(), neighbors.get()},
-                [this](std::int64_t t, std::uint32_t first, std::size_t entry) {
+                [this, tells_marks](std::int64_t t, std::uint32_t first, std::size_t entry) {
                   const HalfEdge e = half_edge(triangle_numbered(t), first);
                   fixed[entry] = mesh_.is_fixed(e);
                   fixed[entry + 1] = mesh_.is_fixed(Mesh::after(e));
                   fixed[entry + 2] = mesh_.is_fixed(Mesh::before(e));
+                  if (tells_marks) marked[entry / 3] = mesh_.is_marked(triangle_of(e));
                 });
     team.run([&](int member) {
       const Range own = part_of(triangle_count, member, team.size());
@@ -128,6 +132,7 @@ class MeshArrays {
 
   StreamedArray<std::int32_t> corners, neighbors;
   StreamedArray<bool> fixed;
+  StreamedArray<bool> marked;  // by triangle
   std::uint32_t triangle_count = 0;
 
  private:

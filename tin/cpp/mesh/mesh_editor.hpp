@@ -21,6 +21,7 @@
 #include "../base/ids.hpp"
 #include "../predicates/predicates.hpp"
 #include "corridor.hpp"
+#include "hull_closing.hpp"
 #include "landmarks.hpp"
 #include "mesh.hpp"
 #include "mesh_points.hpp"
@@ -100,12 +101,28 @@ class BasicMeshEditor {
       if (at.where == Where::kOutside) widen_hull(p);
     }
     last_ = mesh_.leaving(slot);
-    legalize();
+    if (at.where == Where::kInside && !is_watched_) {
+      legalize_star();
+    } else {
+      legalize();
+    }
     return slot;
   }
 
-  // From now on remember every triangle that is made or changed.
-  void watch() { is_watched_ = true; }
+  // Fill the convex hull of a surface whose boundary is fixed, and mark the triangles that are made
+  // for it. False if that cannot be done, because the boundary meets itself, or could be by more
+  // work only; then nothing further is to be done with the mesh.
+  bool close_hull() {
+    std::vector<Triangle> made;
+    if (!HullClosing(mesh_, points_).close(made)) return false;
+    changed_ = made;
+    legalize_changed();
+    for (const Triangle t : made) mesh_.mark(t);
+    return true;
+  }
+
+  // From now on remember every triangle that is made or changed, or no longer.
+  void watch(bool is_watched = true) { is_watched_ = is_watched; }
   void take_touched(std::vector<Triangle>& taken) {
     taken.clear();
     taken.swap(touched_);
@@ -309,6 +326,20 @@ class BasicMeshEditor {
            {half_edge(t, 0), half_edge(t, 2), half_edge(u, 0), half_edge(u, 2)}) {
         put_off(side);
       }
+    }
+  }
+
+  // The same where the edges that are pending are all opposite a new vertex within a triangle: only
+  // such edges can become illegal, and every flip makes two more of them [Lawson 1977].
+  void legalize_star() {
+    while (!pending_.empty()) {
+      const HalfEdge e = pending_.back();
+      pending_.pop_back();
+      if (!is_illegal(e)) continue;
+      const HalfEdge f = mesh_.twin(e);
+      mesh_.flip(e);
+      pending_.push_back(half_edge(triangle_of(e), 0));
+      pending_.push_back(half_edge(triangle_of(f), 2));
     }
   }
 

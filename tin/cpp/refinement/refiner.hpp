@@ -161,6 +161,16 @@ class Refiner {
 
   void examine_touched() {
     editor_.take_touched(touched_);
+    examine_in_order();
+  }
+
+  void examine_star(Vertex v) {
+    touched_.clear();
+    for (const HalfEdge e : mesh_.around(v)) touched_.push_back(triangle_of(e));
+    examine_in_order();
+  }
+
+  void examine_in_order() {
     std::sort(touched_.begin(), touched_.end());
     touched_.erase(std::unique(touched_.begin(), touched_.end()), touched_.end());
     for (const Triangle t : touched_) examine(t);
@@ -400,15 +410,21 @@ class Refiner {
     const Vertex slot = editor_.add_slot();
     input_segment_of_.push_back(kNoSegment);
     is_free_.push_back(true);
+    // Nothing but the triangles around the vertex changes if it is put within one.
+    const bool is_inside = at.where == MeshLocation::Where::kInside;
+    editor_.watch(!is_inside);
     editor_.insert_at(at, p, slot);
+    editor_.watch();
     const std::vector<HalfEdge> beyond = beyond_encroached(slot);
-    if (!beyond.empty()) {
-      editor_.remove(slot);
-      for (const HalfEdge e : beyond) {
-        if (is_stuck(e)) return false;
-      }
-      for (const HalfEdge e : beyond) put_off(mesh_.twin(e), true);
+    if (beyond.empty()) {
+      is_inside ? examine_star(slot) : examine_touched();
+      return true;
     }
+    editor_.remove(slot);
+    for (const HalfEdge e : beyond) {
+      if (is_stuck(e)) return false;
+    }
+    for (const HalfEdge e : beyond) put_off(mesh_.twin(e), true);
     examine_touched();
     return true;
   }
@@ -436,10 +452,15 @@ class Refiner {
   // circle of smaller power about p, because such edges are Delaunay: the walk ends.
   Found walk(Triangle t, Point p) const {
     HalfEdge blocking = kNoHalfEdge;
+    bool is_within = true;
     const HalfEdge end = walk_towards(unentered(t), mesh_.triangle_slots(), [&](HalfEdge entry) {
       HalfEdge across = blocking = kNoHalfEdge;
+      is_within = true;
       for (const HalfEdge e : half_edges(triangle_of(entry))) {
-        if (orientation(point(mesh_.from(e)), point(mesh_.to(e)), p) >= 0) continue;
+        if (e == entry) continue;  // which has p on this side
+        const int side = orientation(point(mesh_.from(e)), point(mesh_.to(e)), p);
+        is_within &= side > 0;
+        if (side >= 0) continue;
         HalfEdge& kind = mesh_.is_fixed(e) ? blocking : across;
         if (kind == kNoHalfEdge || is_apex_before(e, kind)) kind = e;
       }
@@ -449,6 +470,7 @@ class Refiner {
       throw std::logic_error("a walk to the remedy of a triangle did not arrive");
     }
     if (blocking != kNoHalfEdge) return {{MeshLocation::Where::kOnEdge, blocking}, true};
+    if (is_within) return {{MeshLocation::Where::kInside, half_edge(triangle_of(end), 0)}, false};
     const auto point_at = [this](Vertex v) { return point(v); };
     const MeshLocation at = location_in(mesh_, point_at, triangle_of(end), p);
     return {at, at.where == MeshLocation::Where::kOnEdge && mesh_.is_fixed(at.edge)};
