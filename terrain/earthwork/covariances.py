@@ -126,6 +126,20 @@ class _Spread(NamedTuple):
     shares: Float64Array
     """(n, 2, 2), by column and row."""
 
+    def gather(
+        self, chosen: Int64Array, loads: Float64Array, corner: Int64Array, size: int
+    ) -> Float64Array:
+        """Return the loads of chosen places at the nodes of a square, (size, size)."""
+        nodes = np.zeros(size * size)
+        for i in range(2):
+            for j in range(2):
+                column, row = (self.node[chosen] + (i, j) - corner).T
+                inside = (column >= 0) & (column < size) & (row >= 0) & (row < size)
+                weights = (self.shares[chosen, i, j] * loads[chosen])[inside]
+                at = column[inside] * size + row[inside]
+                nodes += np.bincount(at, weights, minlength=size * size)
+        return nodes.reshape(size, size)
+
 
 def _sum_on_lattice(xy: Float64Array, loads: Float64Array, model: ErrorModel) -> Float64Array:
     """Return the sum over all pairs of different places nearly, (k,)."""
@@ -152,7 +166,7 @@ def _sum_on_lattice(xy: Float64Array, loads: Float64Array, model: ErrorModel) ->
         corner = np.array([own % across - 1, own // across]) * block - halo
         near = np.concatenate(beside)
         for k in range(loads.shape[1]):
-            nodes = _gather(spread, near, loads[:, k], corner, size)
+            nodes = spread.gather(near, loads[:, k], corner, size)
             around = np.fft.irfft2(np.fft.rfft2(nodes) * kernel, s=(size, size))
             inner = slice(halo, halo + block)
             total[k] += float((nodes[inner, inner] * around[inner, inner]).sum())
@@ -171,22 +185,6 @@ def _spread(xy: Float64Array, step: float) -> _Spread:
     beyond = place - node
     shares = np.stack([1.0 - beyond, beyond], axis=2)
     return _Spread(node.astype(np.int64), shares[:, 0, :, None] * shares[:, 1, None, :])
-
-
-def _gather(
-    spread: _Spread, chosen: Int64Array, loads: Float64Array, corner: Int64Array, size: int
-) -> Float64Array:
-    """Return the loads of chosen places at the nodes of a square, (size, size)."""
-    nodes = np.zeros(size * size)
-    for i in range(2):
-        for j in range(2):
-            column, row = (spread.node[chosen] + (i, j) - corner).T
-            inside = (column >= 0) & (column < size) & (row >= 0) & (row < size)
-            weights = (spread.shares[chosen, i, j] * loads[chosen])[inside]
-            nodes += np.bincount(
-                column[inside] * size + row[inside], weights, minlength=size * size
-            )
-    return nodes.reshape(size, size)
 
 
 def _sum_own(

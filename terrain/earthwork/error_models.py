@@ -60,7 +60,7 @@ class ErrorModel:
     >>> pile = ts.triangulate([[0, 0, 5], [4, 0, 5], [4, 3, 8], [0, 3, 8]])
     >>> lidar = ts.ErrorModel(0.02, systematic=0.03, correlation_range=20.0)
     >>> ts.volume(pile, base=5.0, standard_error=lidar)["net_error"].round(3)
-    array([0.426])
+    array([0.41])
     """
 
     standard_error: float | str
@@ -84,7 +84,25 @@ class ErrorModel:
         return _REACHES[self.correlation] * self.correlation_range
 
     def correlate(self, distances: Float64Array) -> Float64Array:
-        """Return the correlations of errors some distances apart, but for the nugget."""
+        """Return the correlations of errors some distances apart, but for the nugget.
+
+        Parameters
+        ----------
+        distances : (n,) float64 array
+            In CRS units.
+
+        Returns
+        -------
+        (n,) float64 array
+
+        Examples
+        --------
+        >>> import numpy as np
+        >>> import tinsmith as ts
+        >>> model = ts.ErrorModel(0.02, correlation_range=20.0, correlation="spherical")
+        >>> model.correlate(np.array([0.0, 10.0, 20.0]))
+        array([1.    , 0.3125, 0.    ])
+        """
         share = distances / self.correlation_range
         if self.correlation == "exponential":
             return np.exp(-_FALL * share)
@@ -93,27 +111,28 @@ class ErrorModel:
         share = np.minimum(share, 1.0)
         return 1.0 - share * (1.5 - 0.5 * share * share)
 
-    def find_errors(self, tin: TIN, option: str) -> float | Float64Array:
-        """Return the standard error of all vertices, or of each, (n,); NaN where it is not known.
 
-        Raises OptionError, which names the ``option``, if there is no such column, or what it holds
-        are no numbers from 0 on.
-        """
-        if not isinstance(self.standard_error, str):
-            return float(self.standard_error)
-        name, columns = self.standard_error, tin.attributes
-        if name not in columns:
-            known = f"one of the columns of the vertices ({', '.join(columns) or 'there is none'})"
-            raise OptionError(option, name, f"{known}{suggest(name, columns).rstrip('?')}")
-        errors = as_floats(columns[name])
-        if errors is None or errors.ndim != 1:
-            raise OptionError(option, name, "a column of numbers")
-        is_bad: BoolArray = (errors < 0) | np.isinf(errors)
-        if is_bad.any():
-            count = int(np.count_nonzero(is_bad))
-            what = f"{errors[is_bad][0]:g} in {counted(count, 'row')} of '{name}'"
-            raise OptionError(option, what, "a number >= 0")
-        return errors
+def find_errors(model: ErrorModel, tin: TIN, option: str) -> float | Float64Array:
+    """Return the standard error of all vertices, or of each, (n,); NaN where it is not known.
+
+    Raises OptionError, which names the ``option``, if there is no such column, or what it holds
+    are no numbers from 0 on.
+    """
+    if not isinstance(model.standard_error, str):
+        return float(model.standard_error)
+    name, columns = model.standard_error, tin.attributes
+    if name not in columns:
+        known = f"one of the columns of the vertices ({', '.join(columns) or 'there is none'})"
+        raise OptionError(option, name, f"{known}{suggest(name, columns).rstrip('?')}")
+    errors = as_floats(columns[name])
+    if errors is None or errors.ndim != 1:
+        raise OptionError(option, name, "a column of numbers")
+    is_bad: BoolArray = (errors < 0) | np.isinf(errors)
+    if is_bad.any():
+        count = int(np.count_nonzero(is_bad))
+        what = f"{errors[is_bad][0]:g} in {counted(count, 'row')} of '{name}'"
+        raise OptionError(option, what, "a number >= 0")
+    return errors
 
 
 def as_error_model(given: Any, option: str) -> ErrorModel | None:

@@ -14,7 +14,7 @@ from ..surface import double_areas
 from .cells import Overlay
 from .covariances import measure_variances
 from .detection import Detection, find_rounding, make_detection, require_level
-from .error_models import as_error_model
+from .error_models import as_error_model, find_errors
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -101,7 +101,7 @@ def find_erring(measured: Measured, asked: Asked, tins: Sequence[TIN | None]) ->
             continue
         errors = np.zeros(len(surface.points))
         if model is not None:
-            errors += model.find_errors(tin, option)
+            errors += find_errors(model, tin, option)
             _require_all(errors, surface, model, option)
         shift = 0.0 if model is None else model.systematic * factor
         found.append(Erring(surface, errors * factor, model, shift))

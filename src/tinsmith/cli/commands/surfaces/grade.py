@@ -19,7 +19,6 @@ from ...product_options import product_options
 if TYPE_CHECKING:
     from ....terrain import Table
     from ....tin import TIN
-    from ...output.console import Row
 
 _FACTORS = {"shrink_factor": 1.0, "swell_factor": 1.0, "surplus": 0.0}
 
@@ -65,7 +64,7 @@ def grade(
     tin = job.read_tin(file)
     notes: list[str] = []
     ring = _read_ring(pad, tin, job, notes, drape=elevation is not None or balance)
-    rows: list[Row] = []
+    rows: list[tuple[str, str]] = []
     with job.step("Grading") as progress:
         if balance:
             found = balance_pad(tin, ring, **asked, **factors, progress=progress)
@@ -120,7 +119,7 @@ def _read_ring(path: Path, tin: TIN, job: Job, notes: list[str], *, drape: bool)
     return found[0][0]
 
 
-def _list_balance(table: Table) -> list[Row]:
+def _list_balance(table: Table) -> list[tuple[str, str]]:
     unit: Any = table.units.get("elevation")
     volume = table.units.get("cut") or "cubic units"
     symbol = getattr(unit, "symbol", unit) or ""
