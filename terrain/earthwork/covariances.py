@@ -47,7 +47,7 @@ def measure_variances(xy: Float64Array, loads: Float64Array, model: ErrorModel) 
     step = model.correlation_range / _NODES_A_RANGE
     border = 2.0 * model.reach
     nodes = (width + border) / step * ((height + border) / step)
-    is_many = near.count > max(_FEW_PAIRS, _NODES_A_PAIR * nodes)
+    is_many = near.pair_count > max(_FEW_PAIRS, _NODES_A_PAIR * nodes)
     sum_pairs = _sum_on_lattice if is_many else _sum_one_by_one
     correlated = sum_pairs(xy, loads, model)
     return model.nugget * squares + (1.0 - model.nugget) * (squares + correlated)
@@ -62,7 +62,7 @@ class _Near(NamedTuple):
     ends: Int64Array
 
     @property
-    def count(self) -> int:
+    def pair_count(self) -> int:
         """Number of pairs."""
         return int((self.ends - self.starts).sum())
 
