@@ -175,7 +175,7 @@ def balance(
     >>> hill = ts.triangulate([[0, 0, 0], [60, 0, 6], [60, 60, 6], [0, 60, 0]])
     >>> pad = [[25, 25], [35, 25], [35, 35], [25, 35]]
     >>> found = ts.balance(hill, pad, cut_slope=2, fill_slope=2, shrink_factor=0.8)
-    >>> found.elevation < 3.0, abs(found.table["balance"][0]) < 1e-6
+    >>> found.elevation < 3.0, abs(float(found.table["balance"][0])) < 1e-6
     (True, True)
     """
     done = Progress(progress)
