@@ -182,6 +182,8 @@ def simplify(
     tolerance: float,
     most: int,
     prunes: bool,
+    above: float = ...,
+    below: float = ...,
 ) -> tuple[Int32Array, int]: ...
 def refine(
     points: Float64Array,

@@ -62,7 +62,9 @@ def triangulate(
         ``priority`` and ``name`` are honoured.
     boundary : sequence of (k, 2) or (k, 3) arrays, or polygons
         Rings: only the surface inside is kept; a ring within a ring cuts out an island. Draped if
-        without elevations; what lies beyond the surface of the points is left out.
+        without elevations; what lies beyond the surface of the points is left out. The points are
+        triangulated with the rings; :func:`tinsmith.clip` cuts a finished surface and does not
+        change it.
     holes : sequence of (k, 2) or (k, 3) arrays, or polygons
         Rings: the surface inside is cut away. Each ring is a region of its own; one with islands,
         which stay, is a polygon: of shapely or whatever has a ``__geo_interface__``, or a sequence

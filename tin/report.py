@@ -16,7 +16,7 @@ from ..base.types import Frozen, RowSources
 
 if TYPE_CHECKING:
     from ..base.arrays import Float64Array, Int8Array, Int32Array, Int64Array
-    from ..base.policies import DuplicatePolicy, SimplificationHold
+    from ..base.policies import DuplicatePolicy, SimplificationHold, SimplificationSide
 
 LEFT_OUT = (
     "erased",
@@ -246,6 +246,9 @@ class Simplification(NamedTuple):
     forced_edges : int
         Edges of the given triangles that are no edges of the Delaunay triangulation, kept as soft
         breaklines so that the surfaces do not differ there.
+    side : {"both", "above", "below"}
+        Where the surface that is left may lie: on both sides of the points, or nowhere below them,
+        or nowhere above them.
     """
 
     points: int
@@ -258,6 +261,7 @@ class Simplification(NamedTuple):
     hold: SimplificationHold | None = None
     surface_error: float | None = None
     forced_edges: int = 0
+    side: SimplificationSide = "both"
 
     def sentence(self) -> str:
         """Tell it in one sentence."""
@@ -266,11 +270,20 @@ class Simplification(NamedTuple):
         if self.forced_edges:
             edges = counted(self.forced_edges, "edge")
             kept = f" {edges} of the given triangles, not Delaunay, stayed as soft breaklines."
+        kept = f"{self._describe_side()}.{kept}"
         return (
             f"Simplified from {counted(self.points, 'point')} to {self.vertices:,} "
             f"({share:.3g} %): largest error {self.largest_error:.4g}, "
-            f"RMS error {self.rms_error:.4g} at the points; {self.describe_surface()}.{kept}"
+            f"RMS error {self.rms_error:.4g} at the points; {self.describe_surface()}{kept}"
         )
+
+    def _describe_side(self) -> str:
+        """Tell on which side it lies, if it lies on one."""
+        if self.side == "both":
+            return ""
+        other = "below" if self.side == "above" else "above"
+        what = "the surface given" if self.hold == "surface" else "a point"
+        return f"; nowhere {other} {what}"
 
     def describe_surface(self) -> str:
         """Tell how far the surfaces are apart between the points.

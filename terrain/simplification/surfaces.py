@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from ...base.errors import OptionError
 from ...base.products import product
 from ...base.progress import Progress
 from ...base.results import Raster
@@ -14,7 +15,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike
 
-    from ...base.policies import SimplificationHold
+    from ...base.policies import SimplificationHold, SimplificationSide
     from ...tin import TIN
 
 
@@ -26,6 +27,7 @@ def simplify(
     points: int | None = None,
     keep: ArrayLike = (),
     hold: SimplificationHold | None = None,
+    side: SimplificationSide = "both",
     threads: int | None = None,
     progress: Callable[[float], None] | None = None,
 ) -> TIN:
@@ -60,6 +62,10 @@ def simplify(
         breaklines or given triangles that are not Delaunay, which tells more than its points, else
         "points"; ``report.simplification`` and ``report.notes`` tell which. For a raster that is
         read in blocks it is "points" only.
+    side : {"both", "above", "below"}
+        Where the result may lie: on both sides of the points; "above", nowhere below a point, as a
+        sea bed for navigation must not be deeper than it was measured; "below", nowhere above one.
+        With ``hold="surface"`` the same holds between the points. For a TIN and a tolerance.
     threads : int, optional
         For blocks of a raster, and for triangulating what is left. The result is the same for any
         number.
@@ -80,7 +86,7 @@ def simplify(
     ------
     OptionError
         If not one of ``tolerance`` and ``points`` is given, or more or fewer points are asked for
-        than can be.
+        than can be; if one side is asked for of a raster or with ``points``.
     PointsError
         If a vertex to be kept is none, the TIN overlaps itself, or a raster has no surface.
 
@@ -116,8 +122,12 @@ def simplify(
     >>> ts.simplify(tin, points=60)
     <TIN: 60 vertices, ...>
     """
-    done, goal = Progress(progress), Goal.of(tolerance, points, hold)
+    done, goal = Progress(progress), Goal.of(tolerance, points, hold, side)
     if isinstance(surface, Raster):
+        if side != "both":
+            raise OptionError(
+                "side", side, "'both' for a raster; triangulate it first: from_raster gives points"
+            )
         from .rasters import simplify_raster
 
         simple = simplify_raster(surface, goal, keep, threads, progress=done.stage(0.0, 1.0))

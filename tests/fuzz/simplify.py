@@ -25,6 +25,7 @@ def generate(rng: np.random.Generator) -> Case:
     case["order"] = int(rng.integers(2**31))
     case["flips"] = rng.random(int(rng.integers(0, 12))).tolist() if rng.random() < 0.4 else []
     case["hold"] = [None, "points", "surface"][int(rng.integers(3))]
+    case["side"] = str(rng.choice(["both", "both", "above", "below"]))
     return case
 
 
@@ -33,8 +34,9 @@ def examine(case: Case) -> str:
     tin = triangulate(case)
     if isinstance(tin, str):
         return tin
+    side = case.get("side", "both")
     try:
-        simple = ts.simplify(tin, tolerance=case["tolerance"], hold=case["hold"])
+        simple = ts.simplify(tin, tolerance=case["tolerance"], hold=case["hold"], side=side)
     except ts.PointsError:
         return "refused: too near"
     require_sound(tin, simple)
@@ -43,6 +45,9 @@ def examine(case: Case) -> str:
     assert case["hold"] in (None, told.hold)
     if told.hold == "surface":
         require_near(tin, simple, case["tolerance"])
+    if side != "both":
+        require_on_side(tin, simple, side)
+        return f"simplified {side} by {told.hold}"
     least = ts.simplify(tin, tolerance=1e300).report.simplification.required
     number = least + int(case["share"] * (len(tin.points) - least))
     if number >= 3:
@@ -71,6 +76,18 @@ def require_given_triangles(tin: Any, case: Case) -> None:
     assert found.ok, [one.sentence for one in found.problems]
     if simple.report.simplification.hold == "surface":
         require_near(given, simple, case["tolerance"])
+
+
+def require_on_side(tin: Any, simple: Any, side: str) -> None:
+    """The surface is nowhere below the points, or above them, and between them if that is held."""
+    turn = 1.0 if side == "above" else -1.0
+    told, rounding = simple.report.simplification, 2e-14 * np.abs(tin.points[:, 2]).max()
+    assert told.side == side
+    depth = turn * (tin.points[:, 2] - simple.interpolate(tin.points[:, :2]))
+    assert np.nanmax(depth) <= rounding, f"a point lies {np.nanmax(depth)} beyond the surface"
+    if told.hold == "surface":
+        crossing = float(largest_crossing(tin, simple, turn))
+        assert crossing <= 1e5 * rounding, f"the surfaces cross by {crossing}"
 
 
 def require_near(tin: Any, simple: Any, tolerance: float) -> None:

@@ -78,15 +78,19 @@ def _measure_crossings(p, q, a, b):
         return np.where(inside, np.abs(z - other), 0.0)
 
 
-def largest_crossing(tin, simple):
-    """Return the largest difference where edges of two surfaces cross, in fractions."""
+def largest_crossing(tin, simple, turn=0):
+    """Return the largest difference where edges of two surfaces cross, in fractions.
+
+    With ``turn`` 1 only where the first surface is above the other one, with -1 where it is below.
+    """
     largest = Fraction(0)
     theirs = [_as_fractions(*ends) for ends in zip(*_list_ends(simple), strict=True)]
     low, high = (side(np.stack(_list_ends(simple))[..., :2], axis=0) for side in (np.min, np.max))
     for p, q in zip(*_list_ends(tin), strict=True):
         near = (low <= np.maximum(p, q)[:2]) & (high >= np.minimum(p, q)[:2])
         for k in np.flatnonzero(near.all(axis=1)).tolist():
-            largest = max(largest, _measure_exactly(*_as_fractions(p, q), *theirs[k]))
+            height = _measure_exactly(*_as_fractions(p, q), *theirs[k])
+            largest = max(largest, height * int(turn) if turn else abs(height))
     return largest
 
 
@@ -103,4 +107,4 @@ def _measure_exactly(p, q, a, b):
     t = ((a[0] - p[0]) * uy - (a[1] - p[1]) * ux) / turn
     if not (0 < s < 1 and 0 < t < 1):
         return Fraction(0)
-    return abs(p[2] + s * (q[2] - p[2]) - a[2] - t * (b[2] - a[2]))
+    return p[2] + s * (q[2] - p[2]) - a[2] - t * (b[2] - a[2])

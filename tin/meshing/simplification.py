@@ -13,7 +13,7 @@ import numpy as np
 
 from ...base.checks import is_finite_number, is_whole_number, require_tin
 from ...base.errors import LinesError, OptionError, PointsError, choice
-from ...base.policies import SimplificationHold
+from ...base.policies import SimplificationHold, SimplificationSide
 from ...base.progress import Progress
 from .. import _kernel, topology
 from ..building import Version
@@ -39,21 +39,26 @@ if TYPE_CHECKING:
 
 _ROUNDING_BITS = 46
 """Elevations that differ in digits beyond these count as equal: 1e-11 m at 1000 m."""
+_MOST_ROUNDINGS = 2.0 ** (_ROUNDING_BITS + 2)
+"""So many roundings no difference of two elevations reaches."""
 
 
 class Goal(NamedTuple):
     """What is asked for: a tolerance, in the unit of elevations, or a number of vertices.
 
-    ``hold`` tells where the tolerance is held; None for the default, and with a number.
+    ``hold`` tells where the tolerance is held; None for the default, and with a number. ``side`` is
+    where the surface may lie.
     """
 
     tolerance: float | None
     points: int | None
     hold: SimplificationHold | None = None
+    side: SimplificationSide = "both"
 
     @classmethod
-    def of(cls, tolerance: Any, points: Any, hold: Any = None) -> Goal:
+    def of(cls, tolerance: Any, points: Any, hold: Any = None, side: Any = "both") -> Goal:
         """Return what is asked for."""
+        choice("side", side, SimplificationSide)
         if hold is not None:
             choice("hold", hold, SimplificationHold)
         if (tolerance is None) == (points is None):
@@ -65,10 +70,12 @@ class Goal(NamedTuple):
                 raise OptionError("points", points, "a whole number from 3 on")
             if hold is not None:
                 raise OptionError("hold", hold, "None where a number of points is given")
+            if side != "both":
+                raise OptionError("side", side, "'both' where a number of points is given")
             return cls(None, int(points))
         if not (is_finite_number(tolerance) and tolerance >= 0):
             raise OptionError("tolerance", tolerance, "an elevation >= 0 in the unit of elevations")
-        return cls(float(tolerance), None, hold)
+        return cls(float(tolerance), None, hold, side)
 
     def require_count(self, n_required: int, n_points: int) -> None:
         """Refuse a number of vertices that cannot be."""
@@ -86,12 +93,32 @@ class Goal(NamedTuple):
             return -1.0, self.points
         return self.limit(rounding), _kernel.MOST_POINTS
 
+    def weigh(self, rounding: float) -> tuple[float, float]:
+        """Return factors of what points are above and below the surface.
+
+        On the side where none may be, a rounding counts as the limit.
+        """
+        factor = self.limit(rounding) / rounding if rounding else 1.0
+        return (
+            factor if self.side == "above" else 1.0,
+            factor if self.side == "below" else 1.0,
+        )
+
+    def judge(self, heights: Float64Array, rounding: float) -> Float64Array:
+        """Return what heights of points above a surface count, below it they are negative."""
+        above, below = self.weigh(rounding)
+        judged: Float64Array = np.where(heights > 0.0, above * heights, -below * heights)
+        return judged
+
     def limit(self, rounding: float) -> float:
         """Return the largest difference that is within the tolerance, as doubles compute it.
 
         One that is equal to the tolerance is within it, whichever way it is rounded.
         """
-        return np.inf if self.tolerance is None else self.tolerance + rounding
+        if self.tolerance is None:
+            return np.inf
+        most = np.inf if self.side == "both" else _MOST_ROUNDINGS * rounding
+        return min(self.tolerance, most) + rounding
 
     def drop_rounding(self, error: float) -> float:
         """Return an error as it is told: one beyond the tolerance by rounding is equal to it."""
@@ -138,12 +165,17 @@ def simplify_tin(
     done(0.05)
     rows, needless = _find_rows(tin, skeleton, goal)
     done(0.75)
-    meter = SurfaceMeter(tin) if _find_hold(tin, goal) == "surface" else None
+    rounding = find_rounding(tin.points[:, 2])
+
+    def judge(heights: Float64Array) -> Float64Array:
+        return goal.judge(heights, rounding)
+
+    meter = SurfaceMeter(tin, judge) if _find_hold(tin, goal) == "surface" else None
     part, errors = insert_until_near(
         goal,
-        find_rounding(tin.points[:, 2]),
+        rounding,
         rows,
-        build=lambda rows: _Part(tin, rows, skeleton.threads, meter),
+        build=lambda rows: _Part(tin, rows, skeleton.threads, meter, judge),
         measure=lambda part, limit: part.measure(limit),
         progress=done,
     )
@@ -158,6 +190,7 @@ def simplify_tin(
         hold=None if goal.tolerance is None else "points" if meter is None else "surface",
         surface_error=errors.surface,
         forced_edges=0 if meter is None else len(meter.forced),
+        side=goal.side,
     )
     simple: TIN = part.make_tin(found)
     return simple
@@ -231,6 +264,7 @@ def _find_rows(tin: TIN, skeleton: _Part, goal: Goal) -> tuple[Int64Array, int]:
         tolerance,
         most,
         goal.points is None,
+        *goal.weigh(find_rounding(tin.points[:, 2])),
     )
     return used[rows], needless
 
@@ -242,9 +276,15 @@ class _Part:
     """The surface of a TIN built of some of its vertices, with its lines and its boundary."""
 
     def __init__(
-        self, tin: TIN, rows: Int64Array, threads: int, meter: SurfaceMeter | None = None
+        self,
+        tin: TIN,
+        rows: Int64Array,
+        threads: int,
+        meter: SurfaceMeter | None = None,
+        judge: Callable[[Float64Array], Float64Array] = np.abs,
     ) -> None:
         self.tin, self.rows, self.threads, self._meter = tin, rows, threads, meter
+        self._judge = judge
         self._number_of = np.full(len(tin.points) + 1, -1, np.int32)  # and of no vertex
         self._number_of[rows] = np.arange(len(rows), dtype=np.int32)
         points = np.ascontiguousarray(tin.points[rows])
@@ -287,8 +327,9 @@ class _Part:
         """Measure all vertices of the TIN that its triangles use."""
         tin = self.tin
         used = np.flatnonzero(topology.mark_corners(tin.triangles, len(tin.points)))
-        error = np.abs(self._make().interpolate(tin.points[used, :2]) - tin.points[used, 2])
-        is_far = ~(error <= limit)
+        heights = tin.points[used, 2] - self._make().interpolate(tin.points[used, :2])
+        error = np.abs(heights)
+        is_far = ~(self._judge(heights) <= limit)
         near = error[~is_far] if is_far.any() else error
         errors = Errors(used[is_far], float(near.max()), float(np.sqrt(np.mean(near**2))))
         return errors if self._meter is None else self._measure_between(self._meter, errors, limit)

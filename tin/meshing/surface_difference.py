@@ -14,6 +14,8 @@ from ...base.errors import PointsError
 from .. import topology
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from ...base.arrays import BoolArray, Float64Array, Int64Array
     from .._kernel import Trace
     from ..surface import TIN
@@ -27,7 +29,7 @@ class Crossings(NamedTuple):
     xy: Float64Array
     """(k, 2)."""
     errors: Float64Array
-    """(k,)."""
+    """(k,), as they count."""
     candidates: Int64Array
     """(k, 4): ends of the edge crossed, the nearer first, then the third corners of its triangles;
     -1 for none."""
@@ -70,11 +72,12 @@ class SurfaceMeter:
     """Measures surfaces of some of a TIN's vertices against it, along their edges.
 
     An edge has the same difference in each of them, so it is measured once. ``forced``, (k, 2),
-    are the edges of the TIN that are not Delaunay and are to be kept.
+    are the edges of the TIN that are not Delaunay and are to be kept. ``judge`` returns what
+    heights of the TIN above the surface count, which are compared with the limit.
     """
 
-    def __init__(self, tin: TIN) -> None:
-        self.tin = tin
+    def __init__(self, tin: TIN, judge: Callable[[Float64Array], Float64Array] = np.abs) -> None:
+        self.tin, self._judge = tin, judge
         self.forced = np.empty((0, 2), np.int64)
         own = topology.edges(tin.triangles, tin.neighbors)
         self._keys = np.unique(topology.edge_keys(own, len(tin.points)))
@@ -95,12 +98,14 @@ class SurfaceMeter:
         owners, ratios = topology.find_owners(traced.offsets), traced.ratios
         z, other = start[owners, 2], end[owners, 2]
         own = np.where(ratios > 0.5, other + (1.0 - ratios) * (z - other), z + ratios * (other - z))
-        errors = np.nan_to_num(np.abs(own - traced.elevations))
+        heights = np.nan_to_num(traced.elevations - own)
+        errors = self._judge(heights)
         found = Crossings(owners, traced.places, errors, self._list_candidates(traced))
-        largest = np.zeros(int((~is_known).sum()))
-        np.maximum.at(largest, found.owners, found.errors)
+        largest, counted = np.zeros((2, int((~is_known).sum())))
+        np.maximum.at(largest, owners, np.abs(heights))
+        np.maximum.at(counted, owners, errors)
         whole = max(largest.max(initial=0.0), self._errors[place[is_known]].max(initial=0.0))
-        is_near = largest <= limit
+        is_near = counted <= limit
         self._remember(keys[~is_known][is_near], largest[is_near])
         rows, forced = choose_rows(found, is_left, limit)
         if len(forced):

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from ..inputs import POINTS, Lines, Surface
-from ..options import number
+from ..options import choice, number
 from .base import CommandAlgorithm, Run
 
 
@@ -37,6 +37,14 @@ class SimplifyAlgorithm(CommandAlgorithm):
             "--tolerance",
             "Farthest that a point may be above or below, in the unit of elevations.",
             least=0.0,
+        ),
+        choice(
+            "SIDE",
+            "Where the surface may lie",
+            "--side",
+            "Above: nowhere below a point, such as a sea bed for navigation; below: nowhere above.",
+            ("both", "above", "below"),
+            advanced=True,
         ),
         number("POINTS", "or so many points", "--points", "That are left.", least=3, integer=True),
     )

@@ -114,6 +114,9 @@ RasterCompression: TypeAlias = Literal["deflate", "none"]
 SimplificationHold: TypeAlias = Literal["points", "surface"]
 """Where simplification keeps within a tolerance: at the points given, or between them too."""
 
+SimplificationSide: TypeAlias = Literal["both", "above", "below"]
+"""On which side of the points a simplified surface may lie."""
+
 CurvatureKind: TypeAlias = Literal["profile", "plan", "tangential", "mean", "gaussian"]
 """In which direction a surface is curved."""
 OutsidePolicy: TypeAlias = Literal["error", "nan", "cut"]

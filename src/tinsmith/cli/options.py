@@ -282,7 +282,11 @@ _LINES = under(
     _make_files_option(
         "--soft-breaklines", "Vector file of lines that are edges but no breaks of slope."
     ),
-    _make_files_option("--boundary", "Vector file of polygons: the surface ends there."),
+    _make_files_option(
+        "--boundary",
+        "Vector file of polygons: the surface ends there, and is triangulated anew along them; "
+        "'tinsmith clip' cuts a finished one.",
+    ),
     _make_files_option("--holes", "Vector file of polygons without surface inside."),
     _make_files_option(
         "--erase", "Vector file of polygons: points inside are left out and spanned."

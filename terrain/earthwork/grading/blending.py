@@ -101,7 +101,8 @@ def _are_seam(segments: Float64Array, ground: Any, tolerance: float) -> BoolArra
 
     outline = shapely.boundary(ground)
     is_long = np.hypot(*(segments[:, 1] - segments[:, 0]).T) > tolerance
-    return is_long & _are_within(ground, outline, segments.mean(axis=1), tolerance)
+    is_within = _are_within(ground, outline, segments.mean(axis=1), tolerance)
+    return np.asarray(is_long & is_within, np.bool_)
 
 
 def _are_within(area: Any, outline: Any, places: Float64Array, tolerance: float) -> BoolArray:

@@ -92,7 +92,8 @@ def merge(
         _convert(one, factor, agreed) for one, factor in zip(given, agreed.factors, strict=True)
     ]
     together = replace(agreed, factors=(1.0, 1.0), notes=())
-    merged, notes = levelled[-1], []
+    merged = levelled[-1]
+    notes: list[str] = []
     for number in range(len(given) - 1, 0, -1):
         upper = levelled[number - 1]
         seam = measure_seam(upper, merged)

@@ -24,7 +24,7 @@ inline auto simplify_arrays(const GivenXyz& points, const GivenNumbers& vertex_r
                             const GivenNumbers& holders, const GivenRows& vertices,
                             const GivenTriples& triangles, const GivenTriples& neighbors,
                             const GivenFlags& fixed, double tolerance, std::int32_t most,
-                            bool prunes) {
+                            bool prunes, double above, double below) {
   const auto count = static_cast<std::int32_t>(rows_of(points).count);
   require_numbers(vertex_rows, vertices.shape(0), count, "each vertex must have a row of points");
   require_numbers(holders, points.shape(0), row_count(triangles.shape(0)),
@@ -33,7 +33,7 @@ inline auto simplify_arrays(const GivenXyz& points, const GivenNumbers& vertex_r
   const Simplified found = [&] {
     ReleasedLock release;
     return simplify(editor, {points.data(), count, vertex_rows.data(), holders.data()},
-                    {tolerance, most}, prunes, no_signal);
+                    {tolerance, most, {above, below}}, prunes, no_signal);
   }();
   if (!found.is_complete) throw nb::python_error();
   return std::make_tuple(hand_over(found.rows), found.removed);
@@ -43,6 +43,7 @@ inline void bind_simplification(nb::module_& m) {
   m.def("simplify", &simplify_arrays, "points"_a.noconvert(), "vertex_rows"_a.noconvert(),
         "holders"_a.noconvert(), "vertices"_a.noconvert(), "triangles"_a.noconvert(),
         "neighbors"_a.noconvert(), "fixed"_a.noconvert(), "tolerance"_a, "most"_a, "prunes"_a,
+        "above"_a = 1.0, "below"_a = 1.0,
         "Rows of the points that are left, ascending, and how many were removed again.");
 }
 

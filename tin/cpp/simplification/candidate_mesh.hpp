@@ -42,8 +42,8 @@ class CandidateMesh {
  public:
   // Rows of easting, northing and elevation; those of the mesh's vertices.
   CandidateMesh(MeshEditor& editor, const double* points, std::int32_t count,
-                const std::int32_t* vertex_rows)
-      : editor_(editor) {
+                const std::int32_t* vertex_rows, const SideWeights& weights = {})
+      : editor_(editor), weights_(weights) {
     const auto vertices = static_cast<std::size_t>(editor.slots());
     row_of_.assign(vertex_rows, vertex_rows + vertices);
     std::vector<bool> is_vertex(static_cast<std::size_t>(count), false);
@@ -208,7 +208,7 @@ class CandidateMesh {
     const ElevationPlane over = plane(t);
     list.worst = kNoCandidate;
     for (CandidateId c = list.first; c != kNoCandidate; c = candidate(c).next) {
-      note(list, c, over.error(candidate(c).point.at, candidate(c).point.z));
+      note(list, c, over.error(candidate(c).point.at, candidate(c).point.z, weights_));
     }
   }
 
@@ -251,7 +251,7 @@ class CandidateMesh {
       const SurfacePoint& p = candidate(c).point;
       at = sector(middle, p.at, at);
       push(star_[at], c);
-      note(lists_[number(star_[at])], c, planes_[at].error(p.at, p.z));
+      note(lists_[number(star_[at])], c, planes_[at].error(p.at, p.z, weights_));
     }
   }
 
@@ -368,7 +368,9 @@ class CandidateMesh {
     }
     return worst <= limit ? worst : std::numeric_limits<double>::infinity();
   }
-  double error_of(const SurfacePoint& p) { return planes_[holder_in_gap(p.at)].error(p.at, p.z); }
+  double error_of(const SurfacePoint& p) {
+    return planes_[holder_in_gap(p.at)].error(p.at, p.z, weights_);
+  }
 
   // The triangle of the gap that a point belongs to; one on the edge of the gap is its own.
   std::size_t holder_in_gap(Point p) {
@@ -398,6 +400,7 @@ class CandidateMesh {
   }
 
   MeshEditor& editor_;
+  const SideWeights weights_;
   std::vector<double> elevation_;     // by slot
   std::vector<std::int32_t> row_of_;  // likewise
   std::vector<Candidate> candidates_;

@@ -8,6 +8,12 @@
 
 namespace tinsmith {
 
+// Factors of what points are above a plane, and of what they are below it: a large one keeps the
+// surface on one side of the points.
+struct SideWeights {
+  double above = 1.0, below = 1.0;
+};
+
 // The result depends on the three corners, not on which of them is named first.
 class ElevationPlane {
  public:
@@ -25,10 +31,9 @@ class ElevationPlane {
     north_ = (ux * vz - vx * uz) / area;
   }
 
-  double error(Point p, double z) const {
-    if (is_thin_) return std::fabs(z - weighed(p));
-    const double rise = east_ * (p.x - corner_[0].at.x) + north_ * (p.y - corner_[0].at.y);
-    return std::fabs(z - corner_[0].z - rise);
+  double error(Point p, double z, const SideWeights& weights = {}) const {
+    const double height = height_of(p, z);
+    return height > 0.0 ? weights.above * height : weights.below * -height;
   }
 
  private:
@@ -44,6 +49,12 @@ class ElevationPlane {
     corner_[0] = corner_[1];
     corner_[1] = corner_[2];
     corner_[2] = first;
+  }
+
+  double height_of(Point p, double z) const {
+    if (is_thin_) return z - weighed(p);
+    const double rise = east_ * (p.x - corner_[0].at.x) + north_ * (p.y - corner_[0].at.y);
+    return z - corner_[0].z - rise;
   }
 
   double weighed(Point p) const {

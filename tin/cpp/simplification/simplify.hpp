@@ -21,6 +21,7 @@ namespace tinsmith {
 struct SimplificationGoal {
   double tolerance;   // the largest error that may be left
   std::int32_t most;  // vertices are inserted up to so many
+  SideWeights weights = {};
 };
 
 struct Simplified {
@@ -271,7 +272,7 @@ template <typename KeepGoing>
 Simplified simplify(MeshEditor& editor, const SurfaceRows& rows, const SimplificationGoal& goal,
                     bool prunes, KeepGoing&& keep_going) {
   const Vertex first{editor.slots()};
-  CandidateMesh mesh(editor, rows.points, rows.count, rows.vertex_rows);
+  CandidateMesh mesh(editor, rows.points, rows.count, rows.vertex_rows, goal.weights);
   if (!mesh.place_all(rows.triangles, keep_going)) return {{}, 0, false};
   return simplify_mesh(mesh, first, goal, prunes, keep_going);
 }

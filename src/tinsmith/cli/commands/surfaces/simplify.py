@@ -33,9 +33,11 @@ if TYPE_CHECKING:
 @file_command
 @product_options(
     "terrain.simplification.surfaces.simplify",
-    "tolerance points hold",
+    "tolerance points hold side",
     tolerance="Largest vertical distance from the new surface, in the unit of elevations.",
     points="Number of points to keep, instead of a tolerance.",
+    side="Where the new surface may lie: nowhere below a point (above), such as a sea bed for "
+    "navigation, nowhere above one (below), or on both sides.",
 )
 @file_option(
     "--keep",
@@ -44,13 +46,19 @@ if TYPE_CHECKING:
 )
 @tiled_options()
 def simplify(
-    file: Path, tolerance: float | None, points: int | None, hold: Any, keep: Path | None, job: Job
+    file: Path,
+    tolerance: float | None,
+    points: int | None,
+    keep: Path | None,
+    job: Job,
+    **how: Any,
 ) -> None:
     """Leave out points of the TIN in FILE, or built from the points in it, within a tolerance.
 
     At every point the elevation of the new surface differs by at most --tolerance; with
-    --hold surface between the points too. Boundary, holes, breaklines and water are kept, and so
-    are voids of a raster. A raster may be larger than memory: it is read and simplified in blocks.
+    --hold surface between the points too, and with --side above it lies nowhere below a point.
+    Boundary, holes, breaklines and water are kept, and so are voids of a raster. A raster may be
+    larger than memory: it is read and simplified in blocks.
 
     In tiles (--tiles N) the surface is another one: squares that fit at their sides, in one PLY
     file, the same for any N.
@@ -67,7 +75,8 @@ def simplify(
         wrong = "give one of them" if points is None else "not both"
         raise click.UsageError(f"The options are --tolerance or --points: {wrong}.")
     if job.tiling.given:
-        asked = {"--points": points, "--hold": hold, "--keep": keep}
+        side = None if how["side"] == "both" else how["side"]
+        asked = {"--points": points, "--hold": how["hold"], "--side": side, "--keep": keep}
         whole = next((flag for flag, value in asked.items() if value is not None), "")
         _simplify_tiles(file, tolerance, job, whole)
         return
@@ -85,9 +94,9 @@ def simplify(
             tolerance=tolerance,
             points=points,
             keep=kept,
-            hold=hold,
             threads=job.building.threads,
             progress=progress,
+            **how,
         )
     planned.write("TIN", simple)
     facts = Facts(file)
