@@ -105,7 +105,8 @@ def _make_edit(rows: list[_Row]) -> dict[str, Any]:
     if op == "insert":
         return {"op": op, "points": _list_places(rows)}
     if op == "add_breakline":
-        named = {name: first[name] for name in ("name", "kind", "priority") if name in first}
+        columns: tuple[str, ...] = ("name", "kind", "priority")
+        named = {name: first[name] for name in columns if name in first}
         return {"op": op, "coords": _list_places(rows), **named}
     if op == "move":
         return {"op": op, "vertex": first["vertex"], "point": _list_places(rows)[0]}

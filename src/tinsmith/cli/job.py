@@ -123,9 +123,11 @@ class Job:
         from ..io.reading import join_files
         from ..tin import TIN
 
-        found, base = self._read_each(paths), None
-        if len(found) > 1 and isinstance(found[0], TIN):
-            base = found.pop(0)
+        found = self._read_each(paths)
+        first = found[0]
+        base = first if len(found) > 1 and isinstance(first, TIN) else None
+        if base is not None:
+            found = found[1:]
         names = [Path(name_file(path)) for path in paths[-len(found) :]]
         survey = found[0] if len(found) == 1 else join_files(found, names)
         if isinstance(survey, TIN):
