@@ -83,7 +83,8 @@ class Erring(NamedTuple):
         used = np.flatnonzero(loads.any(axis=0))
         xy = self.surface.points[used, :2]
         found = measure_variances(xy, np.ascontiguousarray(loads[:, used].T), self.model)
-        return found + (weights.sum(axis=1) * self.shift) ** 2
+        variances: Float64Array = found + (weights.sum(axis=1) * self.shift) ** 2
+        return variances
 
 
 def find_erring(measured: Measured, asked: Asked, tins: Sequence[TIN | None]) -> list[Erring]:

@@ -24,6 +24,9 @@ PLACE = [700_040.0, 4_000_041.0]
 LINE = [[700_003.0, 4_000_003.0], [700_090.0, 4_000_080.0]]
 RING = [[700_030, 4_000_030], [700_060, 4_000_030], [700_060, 4_000_060], [700_030, 4_000_060]]
 
+CORNER = [[700_012, 4_000_012], [700_020, 4_000_012], [700_020, 4_000_020]]
+"""A pad away from the vertex of elevation 0."""
+
 RESULTS = {
     "aspect_classes": ts.aspect_classes,
     "catchments": ts.catchments,
@@ -58,7 +61,7 @@ RESULTS = {
     "to_features": ts.to_features,
     "viewshed": lambda tin: ts.viewshed(tin, PLACE, eye_height=2.0),
     "volume": lambda tin: ts.volume(tin, base=318.0),
-    "balance": lambda tin: ts.balance(tin, RING, cut_slope=2.0, fill_slope=2.0),
+    "balance": lambda tin: ts.balance(tin, CORNER, cut_slope=2.0, fill_slope=2.0),
     # surfaces
     "merge": lambda tin: ts.merge([ts.triangulate(add_height(RING, 330), crs=HILL.crs), tin]),
     "clip": lambda tin: ts.clip(tin, [RING]),
