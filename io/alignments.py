@@ -107,6 +107,15 @@ def read_alignment(
         return read_landxml(file, name, **given)
 
 
+def holds_alignments(path: Path) -> bool:
+    """Whether a file is of a format that has alignments with names; False if it is not there."""
+    try:
+        with path.open("rb") as stream:
+            return _find_kind(stream.read(_HEAD)) == "landxml"
+    except OSError:
+        return False
+
+
 def _find_kind(head: bytes) -> str:
     for name in ("landxml", "dxf"):
         sniff = find_format(name).sniff

@@ -17,8 +17,8 @@ CRS = "EPSG:32616"
 UTM = ("--crs", CRS, "--elevation-unit", "m")
 RING = [[700_030, 4_000_030], [700_060, 4_000_030], [700_060, 4_000_060], [700_030, 4_000_060]]
 SLOPES = ("--cut-slope", 2, "--fill-slope", 2)
-NO_SURFACE = {"completion", "formats"}
-"""Commands that read nothing."""
+NO_SURFACE = {"completion", "formats", "alignment"}
+"""Commands that read nothing, or an axis."""
 _NUMBER = re.compile(r"(?<![\w.])-?\d[\d,]*(?:\.\d+)?")
 
 
@@ -248,6 +248,30 @@ def compare_slopes(folder, figures):
             "slopes": run.numbers("Slope")[:3],
         },
     }
+
+
+def compare_quantities(folder, figures):
+    line = ("--line", "cut.geojson", "--interval", 10, "--width", 8)
+    run = Run("sections", "flat.csv", *line, "-o", "q.csv", "-o", "q.png", figures=figures)
+    rows, record = read_table(folder / "q.csv"), run.record["rows"]
+    last = {"table": rows[-1], "record": record[-1]}
+    said = {
+        name: {
+            "cut": [float(row["cut_total"])],
+            "fill": [float(row["fill_total"])],
+            "mass": [float(row["mass"])],
+        }
+        for name, row in last.items()
+    }
+    said["summary"] = {
+        kind: [read_numbers(run.summary[kind.capitalize()].replace("m³", ""))[0]]
+        for kind in ("cut", "fill")
+    }
+    left = read_numbers(re.search(r"(?:waste|borrow): (\S+)", run.words)[1])[0]
+    sign = 1.0 if "waste" in run.words else -1.0
+    said["picture"] = {"mass": [(sign * left[0], left[1])]}
+    said["summary"]["mass"] = [read_numbers(run.summary["Mass"].replace("+", ""))[0]]
+    return said
 
 
 def compare_profiles(folder, figures):
@@ -520,6 +544,7 @@ AGREEMENTS = {
     "profile": [compare_profiles, compare_sections],
     "raster": [compare_raster("raster")],
     "refine": [compare_meshes("refine", "r.ply", "Mesh")],
+    "sections": [compare_quantities],
     "sight": [compare_views],
     "simplify": [compare_meshes("simplify", "s.ply", "Left", "--tolerance", 0.1)],
     "slope": [compare_slopes],
@@ -564,6 +589,8 @@ def folder(tmp_path, monkeypatch):
     write_features(tmp_path / "ring.geojson", ("pad", ring))
     write_features(tmp_path / "two.geojson", ("pad", ring), ("aside", second))
     write_features(tmp_path / "axis.geojson", ("axis", line))
+    inner = {"type": "LineString", "coordinates": [[700_005, 4_000_005], [700_040, 4_000_040]]}
+    write_features(tmp_path / "cut.geojson", ("axis", inner))
     edits = [{"op": "insert", "points": [[700_004, 4_000_004, 321]]}]
     (tmp_path / "edits.json").write_text(json.dumps(edits))
     return tmp_path

@@ -38,6 +38,7 @@ COMMANDS = {
     "hillshade": "hillshade TIN --spacing 5 -o OUT.tif",
     "profile": "profile TIN --line LINE -o OUT.csv",
     "volume": "volume TIN --base 300 -o OUT.csv",
+    "sections": "sections TIN TIN2 --line LINE --interval 3 --width 2 -o OUT.csv",
     "diff": "diff TIN TIN2 -o OUT.csv",
     "drape": "drape TIN LINE -o OUT.gpkg",
     "interpolate": "interpolate TIN --at QUERY -o OUT.csv",
@@ -46,7 +47,7 @@ COMMANDS = {
     "sight": "sight TIN --from Y X --eye-height 2 -o OUT.csv",
     "plan": "plan TIN -o OUT.png",
 }
-READS_NOTHING = {"formats", "completion"}
+READS_NOTHING = {"formats", "completion", "alignment"}  # or an axis, which has no area to be in
 
 
 @pytest.fixture(scope="module")

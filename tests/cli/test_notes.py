@@ -36,6 +36,9 @@ COMMANDS = {
     "profile": ["--from", 700_003, 4_000_003, "--to", 700_090, 4_000_080, "-o", "out.csv"],
     "raster": ["--spacing", 5, "-o", "out.tif"],
     "refine": ["-o", "out.ply"],
+    "sections": [
+        *("flat.csv", "--line", "axis.geojson", "--interval", 20, "--width", 9, "-o", "out.csv")
+    ],
     "sight": ["--from", 700_040, 4_000_041, "--eye-height", 2, "-o", "out.gpkg"],
     "simplify": ["--tolerance", 0.1, "-o", "out.ply"],
     "slope": ["-o", "out.gpkg"],
@@ -44,7 +47,7 @@ COMMANDS = {
 }
 """Arguments behind a file of points, of every command that reads one."""
 
-NO_INPUT = {"formats", "completion"}
+NO_INPUT = {"formats", "completion", "alignment"}
 POINTS_ALONE = {"compare", "convert", "ground", "info"}
 """Commands that make no surface, or none of all points: they know what the reader found."""
 
@@ -82,6 +85,9 @@ def folder(tmp_path, monkeypatch):
     feature = {"type": "Feature", "properties": {}, "geometry": polygon}
     collection = {"type": "FeatureCollection", "crs": crs, "features": [feature]}
     (tmp_path / "ring.geojson").write_text(json.dumps(collection))
+    axis = {"type": "LineString", "coordinates": [[700_005, 4_000_005], [700_040, 4_000_040]]}
+    collection["features"] = [feature | {"geometry": axis}]
+    (tmp_path / "axis.geojson").write_text(json.dumps(collection))
     edits = [{"op": "insert", "points": [[700_004, 4_000_004, 321]]}]
     (tmp_path / "edits.json").write_text(json.dumps(edits))
     return tmp_path

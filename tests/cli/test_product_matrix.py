@@ -27,7 +27,12 @@ TABLES = (".csv", ".tsv", ".txt", ".json")
 OF_OTHERS = {*TABLES, ".geojson", ".geojsonl", ".gpkg", ".fgb", ".shp", ".parquet", ".dxf", ".xml"}
 """Suffixes that hold features or tables where a command makes these beside a TIN."""
 
-OF_OTHER_KINDS = {"Plan": "a drawing", "Preview": "a page", "Difference": "has parts of all kinds"}
+OF_OTHER_KINDS = {
+    "Plan": "a drawing",
+    "Preview": "a page",
+    "Difference": "has parts of all kinds",
+    "BalancedPad": "has a surface and a table",
+}
 """Results that are written by themselves, not by :func:`tinsmith.write`."""
 
 
@@ -105,6 +110,10 @@ COMMANDS = {
     "hillshade": ("hillshade SITE --spacing 5", "Raster"),
     "profile": ("profile SITE --line LINE", "Table picture"),
     "profile --sections": ("profile SITE --line LINE --sections 20 20", "Features Table picture"),
+    "sections": (
+        "sections SITE OTHER --line LINE --interval 20 --width 10",
+        "Table picture",
+    ),
     "volume": ("volume SITE --base 318", "Table Features picture"),
     "volume of two": ("volume SITE OTHER", "Table Features picture"),
     "volume --stage-storage": ("volume SITE --stage-storage --interval 50", "Table"),
@@ -128,6 +137,7 @@ COMMANDS = {
     "convert": ("convert SITE", "TIN"),
 }
 OTHERS = {
+    "alignment": "writes an axis, and no product of a surface",
     "build": "writes a surface, as convert does",
     "info": "writes nothing",
     "check": "writes a report",

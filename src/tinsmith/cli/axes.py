@@ -7,15 +7,12 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from .output.failures import Failure
 from .parameters import file_option
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from ..terrain import Alignment
-
-_HEAD = 4096
 
 
 def axis_options(help: str) -> Callable[[Any], Any]:  # noqa: A002 - click's name
@@ -25,23 +22,11 @@ def axis_options(help: str) -> Callable[[Any], Any]:  # noqa: A002 - click's nam
         named = click.option(
             "--alignment",
             metavar="NAME",
-            help="Name of the alignment in a LandXML file of --line, or its number from 1.",
+            help="Name of the alignment in the file of --line, or its number from 1.",
         )
         return file_option("--line", help, name="line_file")(named(function))
 
     return decorate
-
-
-def is_landxml(path: Path) -> bool:
-    """Whether a file is LandXML; one that cannot be opened is none."""
-    from ..io import find_format
-
-    sniff = find_format("landxml").sniff
-    try:
-        with path.open("rb") as file:
-            return sniff is not None and sniff(file.read(_HEAD))
-    except OSError:
-        return False
 
 
 def read_axis(
@@ -55,8 +40,12 @@ def read_axis(
     from ..io.vector.survey_lines import split_layer
 
     file, layer = split_layer(path)
-    if is_landxml(file):
-        return read_alignment(file, name, crs=crs, unit=unit)
-    if name is not None:
-        raise Failure(f"--alignment is for LandXML, and '{path}' is none.")
-    return read_alignment(file, layer=layer, crs=crs, unit=unit)
+    return read_alignment(file, name, layer=layer, crs=crs, unit=unit)
+
+
+def holds_alignments(path: Path) -> bool:
+    """Whether the format of a file has alignments, and not lines alone."""
+    from ..io.alignments import holds_alignments as holds
+    from ..io.vector.survey_lines import split_layer
+
+    return holds(split_layer(path)[0])

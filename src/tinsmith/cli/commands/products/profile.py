@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from ....base.sentences import counted
-from ...axes import axis_options, is_landxml, read_axis
+from ...axes import axis_options, holds_alignments, read_axis
 from ...command import command
 from ...job import Job, name_features
 from ...output.counts import mesh_counts
@@ -119,7 +119,7 @@ def _cut_tiles(
 
 def _read_lines(path: Path, surface: TIN | TiledPoints, name: str | None, job: Job) -> Any:
     """Return the alignment of a file, or its lines."""
-    if is_landxml(path) or name is not None:
+    if holds_alignments(path) or name is not None:
         return read_axis(path, name, crs=surface.crs)
     return job.read_features(path, surface, "lines", "a profile runs along lines")
 

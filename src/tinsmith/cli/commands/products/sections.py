@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from ...axes import axis_options, is_landxml, read_axis
+from ...axes import axis_options, holds_alignments, read_axis
 from ...command import command
 from ...job import Job, name_features, surface_options
 from ...output.counts import mesh_counts
@@ -36,7 +36,6 @@ if TYPE_CHECKING:
     right="How far sections reach to the right instead.",
     start="Station where a line begins; an alignment has its own.",
 )
-@click.option("--title", metavar="TEXT", help="Title of the diagram; default the files' names.")
 @surface_options()
 def sections(ground: Path, design: Path, line_file: Path | None, job: Job, **asked: Any) -> None:
     """Compute cut and fill from the TIN in GROUND to that in DESIGN, section by section.
@@ -60,10 +59,10 @@ def sections(ground: Path, design: Path, line_file: Path | None, job: Job, **ask
     surfaces = job.read_tins([ground, design])
     first, second = surfaces
     axis = read_axis(line_file, asked.pop("alignment"), crs=first.crs)
-    title = asked.pop("title") or f"Mass haul: {make_title(ground)} to {make_title(design)}"
+    title = f"Mass haul: {make_title(ground)} to {make_title(design)}"
     start = asked.pop("start")
     if start != 0.0:
-        if is_landxml(line_file):
+        if holds_alignments(line_file):
             raise click.UsageError("--start is for lines: an alignment has stations of its own.")
         axis = replace(axis, start=start)
     with job.step("Measuring") as progress:

@@ -122,7 +122,8 @@ def _read_script(path: Path) -> list[dict[str, Any]]:
         else:
             with open_ordinary_file(path) as local, translate_system_errors(path):
                 text = local.read_bytes().decode("utf-8-sig")
-        if path.suffix.lower() in (".csv", ".tsv"):
+        is_script = path.suffix.lower() in (".json", "") or text.lstrip()[:1] in ("[", "{")
+        if not is_script:
             return read_edit_table(text, path)
         content = json.loads(text)
     except json.JSONDecodeError as error:
