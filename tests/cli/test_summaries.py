@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -179,11 +180,13 @@ def test_what_the_reader_skipped_and_noted():
 
 
 def test_the_report_with_point_numbers(survey, report):
-    found = summaries.describe_report(report, survey, ["a gap"])
+    tin = SimpleNamespace(report=report, row_attributes=survey.attributes)
+    found = summaries.describe_report(tin, survey, ["a gap"])
     assert found["notes"][-1] == "a gap"
     assert [merge["numbers"] for merge in found["merges"]] == [[5, 10, 11], [6, 9]]
     assert all(type(n) is int for merge in found["merges"] for n in merge["numbers"])
-    without = summaries.describe_report(report, ts.Survey(points=GROUND))
+    plain = SimpleNamespace(report=report, row_attributes={})
+    without = summaries.describe_report(plain, ts.Survey(points=GROUND))
     assert "numbers" not in without["merges"][0]
     assert line_summaries.count_lines(report) == {
         "rows": 7,

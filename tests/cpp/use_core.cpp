@@ -49,6 +49,13 @@ Arrays arrays_of(const MeshEditor& mesh) {
           {made.fixed.get(), made.fixed.get() + size}};
 }
 
+Arrays arrays_of(const RefinedSurface& made) {
+  const std::size_t size = std::size_t{3} * made.triangle_count;
+  return {{made.corners.get(), made.corners.get() + size},
+          {made.neighbors.get(), made.neighbors.get() + size},
+          {made.fixed.get(), made.fixed.get() + size}};
+}
+
 std::vector<double> xyz_of(const std::vector<Point>& points) {
   std::vector<double> xyz;
   for (const Point p : points) xyz.insert(xyz.end(), {p.x, p.y, p.x + 2.0 * p.y});
@@ -180,15 +187,16 @@ void refine_square() {
     fixed[i] = arrays.neighbors[i] == kNoNeighbor;
   }
   const std::vector<double> xyz = xyz_of(corners);
-  MeshEditor mesh = editor_of({xyz.data(), 4, 3}, {arrays.corners.data(), arrays.neighbors.data(),
-                                                   fixed.get(), arrays.count()});
+  const GivenTriangles given{arrays.corners.data(), arrays.neighbors.data(), fixed.get(),
+                             arrays.count()};
   const RefinementGoal goal{0.5, 5.0, INFINITY};
   Team team(1, keep_going);
-  const Refined refined = refine(mesh, goal, {nullptr, 0}, 100000, team);
+  const Refined refined = refine({xyz.data(), 4, 3}, given, goal, {nullptr, 0}, 100000, team);
   expect(refined.ended == Refiner::Ended::kDone && refined.misses.empty(), "the goal is reached");
   std::vector<Point> all = corners;
   all.insert(all.end(), refined.points.begin(), refined.points.end());
-  const Arrays made = arrays_of(mesh);
+  expect(refined.surface.has_value(), "the surface of the square is given back");
+  const Arrays made = arrays_of(*refined.surface);
   prove(all, made, "refined");
   double area = 0.0;
   for (std::int32_t t = 0; t < made.count(); ++t) {

@@ -72,13 +72,17 @@ def measure_quality(tin: TIN) -> Quality | None:
     return None if is_geographic(tin.crs) else quality(tin)
 
 
-def describe_report(report: Report, survey: Survey, notes: Sequence[str] = ()) -> dict[str, Any]:
-    """Return the report, with further notes, and the point numbers of merged rows."""
+def describe_report(tin: TIN, survey: Survey, notes: Sequence[str] = ()) -> dict[str, Any]:
+    """Return the report, with further notes, and the point numbers of merged rows.
+
+    Rows are those of the TIN's input, to which the survey may have been added.
+    """
+    report = tin.report
     record = report.to_dict()
     record["notes"] = list(dict.fromkeys([*record["notes"], *notes]))
     record["skipped_lines"] = {what: list(rows) for what, rows in survey.skipped_lines.items()}
     record["findings"] = [finding.to_dict() for finding in survey.findings]
-    numbers = survey.attributes.get("number")
+    numbers = tin.row_attributes.get("number")
     if numbers is not None:
         for merge in record["merges"]:
             merge["numbers"] = np.asarray(numbers)[list(merge["rows"])].tolist()

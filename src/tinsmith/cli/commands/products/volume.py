@@ -71,8 +71,7 @@ def volume(files: tuple[Path, ...], regions: Path | None, job: Job, **asked: Any
       tinsmith volume sample_data/site_survey.csv sample_data/design_pad.csv --codes -o pad.csv
       tinsmith volume sample_data/site_survey.csv --crs EPSG:32616 --base 325 -o cut.gpkg
       tinsmith volume sample_data/site_survey.csv --stage-storage --interval 0.5 -o stages.csv
-      tinsmith volume before.csv after.csv --standard-error 0.02 --other-standard-error 0.03 \
-        --confidence 0.95 -o change.png
+      tinsmith volume sample_data/site_survey.csv --base 325 --standard-error 0.02 -o errors.csv
     """
     from ....terrain import difference, earthwork_map, stage_storage
     from ....terrain import volume as measure

@@ -86,7 +86,6 @@ def build(
     Example:
       tinsmith build sample_data/site_survey.csv --crs EPSG:32616 --codes -o site.geojson
       tinsmith build sample_data/jacksboro.tif --stride 4 -o hills.ply -o hills.stl
-      tinsmith build site.gpkg points.csv -o new.gpkg
       tinsmith build --from-contours contours.gpkg --z-field elevation -o hills.gpkg
     """
     from ....terrain import mend_flats
@@ -120,7 +119,7 @@ def build(
             tin = mend_flats(tin, progress=progress)
     job.note_surfaces(tin)
     planned.write("TIN", tin)
-    account = describe_report(tin.report, survey, job.console.notes) | describe_suspects(suspects)
+    account = describe_report(tin, survey, job.console.notes) | describe_suspects(suspects)
     if report is not None:
         write_text(report, format_json(account) + "\n")
     rows = [*report_suspects(suspects), *_summarise_flats(tin, is_mended=from_contours)]

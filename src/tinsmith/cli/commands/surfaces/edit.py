@@ -46,7 +46,6 @@ def edit(file: Path, script: Path | None, undo: int | None, report: Path | None,
 
     Example:
       tinsmith edit sample_data/site_survey.csv sample_data/edits.json --crs EPSG:32616 -o site.ply
-      tinsmith edit site.gpkg --undo 2 -o before.gpkg
 
     A script:
       [{"op": "insert", "points": [[752700.5, 4024250.0, 322.1]], "duplicates": "last"},
