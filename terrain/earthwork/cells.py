@@ -8,7 +8,7 @@ import numpy as np
 
 from .. import _kernel
 from ..surface import Surface, double_areas, fan_out
-from .meshes import divide_at_zero
+from .meshes import classify_signs, divide_at_zero
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -42,8 +42,7 @@ class Cells(NamedTuple):
 
     def classify(self) -> Int8Array:
         """Return +1 for triangles that are filled, -1 for those cut, 0 where surfaces agree."""
-        signs: Int8Array = np.sign(self.points[self.triangles, 2].sum(axis=1)).astype(np.int8)
-        return signs
+        return classify_signs(self.points, self.triangles)
 
 
 class Overlay:

@@ -223,6 +223,15 @@ def cut_at_zero(points: Float64Array, triangles: Int32Array) -> tuple[Float64Arr
     return divide_at_zero(points, triangles)[:2]
 
 
+def classify_signs(points: Float64Array, triangles: Int32Array) -> Int8Array:
+    """Return the sign of the third coordinate in each triangle, +1, -1 or 0.
+
+    No triangle has both signs, but for roundings, which the mean does not mind.
+    """
+    signs: Int8Array = np.sign(points[triangles, 2].sum(axis=1)).astype(np.int8)
+    return signs
+
+
 def divide_at_zero(
     points: Float64Array, triangles: Int32Array
 ) -> tuple[Float64Array, Int32Array, Int64Array]:

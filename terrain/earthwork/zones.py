@@ -12,7 +12,7 @@ from ...tin import topology
 from .. import _kernel
 from ..surface import cut_at_repeats
 from .detection import classify_beyond
-from .meshes import number_parts
+from .meshes import classify_signs, number_parts
 
 if TYPE_CHECKING:
     from ...base.arrays import BoolArray, Float64Array, Int8Array, Int32Array, Int64Array
@@ -31,9 +31,7 @@ def classify(mesh: Triangulation, detection: Detection | None = None) -> Int8Arr
     if detection is not None:
         levels = detection.measure(mesh.points[:, :2])
         return classify_beyond(mesh.points[:, 2], levels, mesh.triangles)
-    # No triangle has both signs, but for roundings, which the mean does not mind.
-    classes: Int8Array = np.sign(mesh.points[mesh.triangles, 2].sum(axis=1)).astype(np.int8)
-    return classes
+    return classify_signs(mesh.points, mesh.triangles)
 
 
 def trace_zero_line(

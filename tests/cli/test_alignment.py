@@ -70,6 +70,13 @@ def test_profiles_run_along_an_alignment(road):
     assert Path("p.csv").read_text().splitlines()[1].startswith("0,100.0,")
 
 
+def test_degrees_are_never_taken_for_lengths(road):
+    Path("gps.csv").write_text("longitude,latitude\n-87.1,36.2\n")
+    told = run("alignment", "road.xml", "--at", "gps.csv", "-o", "offsets.csv", code=1)
+    assert "longitudes and latitudes by their header" in told
+    assert not Path("offsets.csv").exists()
+
+
 @pytest.mark.parametrize(
     ("words", "said"),
     [

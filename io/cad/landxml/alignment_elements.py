@@ -11,6 +11,7 @@ import numpy as np
 
 from ....base.sentences import coordinate, shown
 from ....terrain import Element
+from .content import SPIRALS
 from .numbers import fault, parse_list
 
 if TYPE_CHECKING:
@@ -24,22 +25,6 @@ LARGEST_MISFIT = 0.05
 """CRS units: how far an element may miss its own end, at most."""
 
 _NOTED = 1e-3
-_LAWS = {
-    "clothoid": "clothoid",
-    "bloss": "bloss",
-    "revBloss": "bloss",
-    "cosine": "cosine",
-    "revCosine": "cosine",
-    "sinusoid": "sinusoid",
-    "revSinusoid": "sinusoid",
-    "biquadratic": "biquadratic",
-    "revBiquadratic": "biquadratic",
-    "cubic": "cubic parabola",
-    "cubicParabola": "cubic parabola",
-    "japaneseCubic": "cubic parabola",
-    "sineHalfWave": "sine half-wave",
-}
-"""Types of spirals, and what they are called here."""
 
 
 class _Ends(NamedTuple):
@@ -165,9 +150,9 @@ class ElementReader:
 
     def _add_spiral(self, node: Node) -> None:
         kind = node.attributes.get("spiType", "clothoid").strip()
-        law = _LAWS.get(kind)
+        law = SPIRALS.get(kind)
         if law is None:
-            known = ", ".join(_LAWS)
+            known = ", ".join(SPIRALS)
             raise fault(
                 node.line,
                 f"a Spiral is of the type {shown(kind)}, whose form is not known here, and {known} "

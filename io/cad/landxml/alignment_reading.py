@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ....base.crs import scale_elevations
 from ....base.errors import CrsError, OptionError, ReadError, TinsmithError
 from ....base.georeference import find_axes
 from ....base.sentences import FILE, coordinate, counted, shown
@@ -180,6 +181,7 @@ def _read_verticals(node: Node, measures: Measures) -> tuple[list[VerticalAlignm
                 continue
             try:
                 vertical = VerticalAlignment(points, name)
+                _require_one_unit(one, vertical, measures)
                 _require_lengths(one, vertical, measures.scale)
                 verticals.append(vertical)
             except (OptionError, ReadError) as error:
@@ -187,6 +189,14 @@ def _read_verticals(node: Node, measures: Measures) -> tuple[list[VerticalAlignm
     if n_surfaces:
         notes.append(f"Not read: {counted(n_surfaces, 'profile')} of surfaces (ProfSurf).")
     return verticals, notes
+
+
+def _require_one_unit(node: Node, vertical: VerticalAlignment, measures: Measures) -> None:
+    """Refuse arcs whose elevations are in another unit than stations: they are none there."""
+    if vertical.has_arcs and scale_elevations(measures.source, measures.elevation_unit) != 1.0:
+        raise fault(
+            node.line, "a ProfAlign has arcs, and elevations are in another unit than stations"
+        )
 
 
 def _require_lengths(node: Node, vertical: VerticalAlignment, scale: float) -> None:

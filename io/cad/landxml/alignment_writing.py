@@ -10,7 +10,7 @@ from ....base.errors import FormatError
 from ....base.georeference import find_axes
 from ....base.sentences import FILE
 from ....terrain import Element
-from .content import quote
+from .content import SPIRALS, quote
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -20,15 +20,7 @@ if TYPE_CHECKING:
 _STRAIGHT = 1e-12
 """Radians of a turn that rounding leaves where a spiral is straight."""
 
-_TYPES = {
-    "clothoid": "clothoid",
-    "bloss": "bloss",
-    "cosine": "cosine",
-    "sinusoid": "sinusoid",
-    "biquadratic": "biquadratic",
-    "cubic parabola": "cubic",
-    "sine half-wave": "sineHalfWave",
-}
+_TYPES = {kind: name for name, kind in reversed(SPIRALS.items())}
 
 
 def format_alignment(alignment: Alignment, name: str, factor: float) -> str:

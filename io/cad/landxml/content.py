@@ -30,6 +30,24 @@ SOURCE = "source"
 """Of a line: the line that it comes from, counted as in a TIN."""
 
 
+SPIRALS = {
+    "clothoid": "clothoid",
+    "bloss": "bloss",
+    "revBloss": "bloss",
+    "cosine": "cosine",
+    "revCosine": "cosine",
+    "sinusoid": "sinusoid",
+    "revSinusoid": "sinusoid",
+    "biquadratic": "biquadratic",
+    "revBiquadratic": "biquadratic",
+    "cubic": "cubic parabola",
+    "cubicParabola": "cubic parabola",
+    "japaneseCubic": "cubic parabola",
+    "sineHalfWave": "sine half-wave",
+}
+"""Types of spirals, and what they are called here; the first of a kind is written."""
+
+
 @dataclass(slots=True, eq=False)
 class Line:
     """A breakline, boundary or contour."""

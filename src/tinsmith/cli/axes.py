@@ -15,16 +15,18 @@ if TYPE_CHECKING:
     from ..terrain import Alignment
 
 
+def alignment_option(where: str) -> Callable[[Any], Any]:
+    """Return the option that chooses an alignment of a file."""
+    words = f"Name of the alignment in {where}, or its number from 1."
+    return click.option("--alignment", metavar="NAME", help=words)
+
+
 def axis_options(help: str) -> Callable[[Any], Any]:  # noqa: A002 - click's name
     """Add the options of a file of lines, and of which alignment in it is meant."""
 
     def decorate(function: Any) -> Any:
-        named = click.option(
-            "--alignment",
-            metavar="NAME",
-            help="Name of the alignment in the file of --line, or its number from 1.",
-        )
-        return file_option("--line", help, name="line_file")(named(function))
+        named = alignment_option("the file of --line")(function)
+        return file_option("--line", help, name="line_file")(named)
 
     return decorate
 

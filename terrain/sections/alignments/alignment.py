@@ -13,13 +13,13 @@ import numpy as np
 
 from ....base.checks import as_length, as_number
 from ....base.crs import CRS, Unit, scale_elevations
-from ....base.errors import LinesError, OptionError
+from ....base.errors import LinesError, OptionError, PointsError
 from ....base.georeference import find_axes, require_same_crs
 from ....base.notes import as_notes
 from ....base.results import Features, Table
 from ....base.sentences import coordinate, counted, inflect, shown
 from ....tin.building import find_crs
-from .elements import Element
+from .elements import Element, measure_elements
 from .nearest import Pieces, cut_pieces, find_nearest
 from .stationing import StationEquation, Stationing
 from .values import as_numbers, as_places
@@ -66,7 +66,8 @@ class Alignment:
     LinesError
         If there is no element, or one does not begin where the one before ends.
     OptionError
-        If an equation lies off the alignment, or two vertical alignments have the same name.
+        If an equation lies off the alignment, two vertical alignments have the same name, or one
+        has arcs and its elevations are in another unit than stations.
     CrsError
         If coordinates are angles.
 
@@ -107,15 +108,20 @@ class Alignment:
         keep(self, "crs", crs)
         keep(self, "elevation_unit", unit or (None if crs is None else crs.vertical_unit))
         keep(self, "notes", as_notes(self.notes))
-        scale_elevations(crs, self.elevation_unit)  # refuses angles
+        scale = scale_elevations(crs, self.elevation_unit)  # which refuses angles
         if not self.elements:
             raise LinesError("An alignment has no element: at least one is needed.")
         _require_joined(self.elements)
+        if crs is not None and scale != 1.0 and any(one.has_arcs for one in self.verticals):
+            allowed = (
+                f"{crs.horizontal_unit.name}, that of stations, where vertical curves are arcs"
+            )
+            raise OptionError("elevation_unit", str(self.elevation_unit), allowed)
         names = [one.name for one in self.verticals]
         if len(set(names)) < len(names):
             allowed = "a name of its own for each"
             raise OptionError("names of vertical alignments", names, allowed=allowed)
-        keep(self, "_stationing", Stationing(self.start, self.end, tuple(self.equations)))
+        _ = self._zones  # which refuses equations that are none
 
     @classmethod
     def from_points(
@@ -211,7 +217,7 @@ class Alignment:
         array([[4., 1.]])
         """
         element, along = self._find_elements(stations)
-        places, tangents = self._measure(element, along)
+        places, tangents = measure_elements(self.elements, element, along)
         aside = as_numbers("offset", offset, len(along))
         left = tangents[:, ::-1] * ([1.0, -1.0] if self._is_mirrored else [-1.0, 1.0])
         beside: Float64Array = places - left * aside[:, None] + 0.0
@@ -245,8 +251,8 @@ class Alignment:
         array([[1., 0.]])
         """
         element, along = self._find_elements(stations)
-        tangents = self._measure(element, along)[1]
-        is_break = (element > 0) & (along <= self._near)
+        tangents = measure_elements(self.elements, element, along)[1]
+        is_break = (element > 0) & (along <= self.rounding)
         if not (mean and is_break.any()):
             return tangents
         before = np.array([self.elements[k - 1].end_direction for k in element[is_break].tolist()])
@@ -360,7 +366,7 @@ class Alignment:
             points = points.coordinates
         xy = as_places(points) + 0.0
         if len(xy) == 0:
-            raise OptionError("points", 0, "1 or more", what="number of points")
+            raise PointsError("There is no point: at least one is needed.")
         feet = find_nearest(self.elements, self._pieces, xy)
         station = np.where(feet.is_beyond, np.nan, self._ends[feet.elements] + feet.distances)
         sign = 1.0 if self._is_mirrored else -1.0
@@ -430,7 +436,7 @@ class Alignment:
         >>> road.find_stations([110.0])
         array([50.])
         """
-        return self._zones.find(as_numbers("stations", written), zone, self._near)
+        return self._zones.find(as_numbers("stations", written), zone, self.rounding)
 
     # ---------------------------------------------------------------- as other things
 
@@ -512,7 +518,7 @@ class Alignment:
         array([  0., 100.])
         """
         counts = [
-            max(1, math.ceil(one.length * math.sqrt(_find_curvature(one) / (8.0 * tolerance))))
+            max(1, math.ceil(one.length * math.sqrt(one.largest_curvature / (8.0 * tolerance))))
             for one in self.elements
         ]
         if sum(counts) > _MOST_VERTICES:
@@ -603,7 +609,7 @@ class Alignment:
         multiples = np.arange(math.ceil(self.start / step), math.floor(self.end / step) + 1) * step
         nearest = np.clip(np.searchsorted(self._ends, multiples), 1, len(self._ends) - 1)
         away = np.minimum(self._ends[nearest] - multiples, multiples - self._ends[nearest - 1])
-        at = np.union1d(self._ends, multiples[away > self._near])
+        at = np.union1d(self._ends, multiples[away > self.rounding])
         places, tangents = self.points_at(at, offset=offset), self.tangents_at(at)
         columns: dict[str, Any] = {"station": at}
         if self.equations:
@@ -626,19 +632,13 @@ class Alignment:
         azimuths: Float64Array = np.degrees(np.arctan2(east, north)) % 360.0
         return azimuths
 
+    @cached_property
+    def _zones(self) -> Stationing:
+        return Stationing(self.start, self.end, tuple(self.equations))
+
     @property
     def rounding(self) -> float:
         """How far stations may be off by the rounding of coordinates, CRS units."""
-        return self._near
-
-    @property
-    def _zones(self) -> Stationing:
-        found: Stationing = self.__dict__["_stationing"]
-        return found
-
-    @property
-    def _near(self) -> float:
-        """How far stations may be off by the rounding of coordinates."""
         size = max(np.abs(self._pieces.places).max(), np.abs(self._ends).max())
         return float(8.0 * np.spacing(size)) * math.sqrt(len(self.elements))
 
@@ -649,24 +649,13 @@ class Alignment:
     def _find_elements(self, stations: ArrayLike) -> tuple[Int64Array, Float64Array]:
         """Return the element of each station, the one that begins there, and how far along."""
         at = as_numbers("stations", stations)
-        off = ~((at >= self.start - self._near) & (at <= self.end + self._near))
+        off = ~((at >= self.start - self.rounding) & (at <= self.end + self.rounding))
         if off.any():
             allowed = f"from {coordinate(self.start)} to {coordinate(self.end)}, on the alignment"
             raise OptionError("station", float(at[np.argmax(off)]), allowed=allowed)
         element = np.searchsorted(self._ends[1:-1], at, side="right")
         lengths = np.array([one.length for one in self.elements])
         return element, np.clip(at - self._ends[element], 0.0, lengths[element])
-
-    def _measure(
-        self, element: Int64Array, along: Float64Array
-    ) -> tuple[Float64Array, Float64Array]:
-        places, tangents = np.empty((len(along), 2)), np.empty((len(along), 2))
-        for k in np.unique(element).tolist():
-            own = element == k
-            places[own] = self.elements[k].places(along[own])
-            angle = self.elements[k].directions(along[own])
-            tangents[own] = np.column_stack([np.cos(angle), np.sin(angle)])
-        return places, tangents
 
     def __repr__(self) -> str:
         title = f" {self.name}" if self.name else ""
@@ -698,10 +687,6 @@ def _describe_feet(feet: Feet) -> list[str]:
         are = inflect(f"{twofold} of {counted(count, 'point')} [is|are]", twofold)
         notes.append(f"{are} as near to another place: the first station was taken.")
     return notes
-
-
-def _find_curvature(element: Element) -> float:
-    return max(abs(element.start_curvature), abs(element.end_curvature))
 
 
 def _cut_vertical(

@@ -13,7 +13,9 @@ from ....base.errors import OptionError, choice
 from .transitions import CURVATURES, SHAPES, Law, Ordinate
 
 if TYPE_CHECKING:
-    from ....base.arrays import Float64Array
+    from collections.abc import Sequence
+
+    from ....base.arrays import Float64Array, Int64Array
 
 ElementKind = Literal["line", "arc", Law, Ordinate]
 
@@ -96,7 +98,7 @@ class Element:
         if self.kind in SHAPES and (ends[0] == 0.0) == (ends[1] == 0.0):
             allowed = f"0 at one end of a {self.kind}, not at the other"
             raise OptionError("curvature", ends, allowed=allowed)
-        if max(map(abs, ends)) * self.length > _MOST_TURNS * 2.0 * math.pi:
+        if self.turn > _MOST_TURNS * 2.0 * math.pi:
             allowed = f"at most {_MOST_TURNS:.0f} full turns at that curvature"
             raise OptionError("length", self.length, allowed=allowed)
 
@@ -116,9 +118,14 @@ class Element:
         return float(self.directions([self.length])[0])
 
     @property
+    def largest_curvature(self) -> float:
+        """1 / the smallest radius of its ends, 0 of a line; 1 / CRS units."""
+        return max(abs(self.start_curvature), abs(self.end_curvature))
+
+    @property
     def turn(self) -> float:
         """Radians by which its direction changes, at most, on the way."""
-        return max(abs(self.start_curvature), abs(self.end_curvature)) * self.length
+        return self.largest_curvature * self.length
 
     def places(self, distances: Any) -> Float64Array:
         """Return where it is after some of its length.
@@ -208,6 +215,28 @@ class Element:
         if self.kind not in ("line", "arc"):
             count = max(4, 2 * math.ceil(count / 2))
         return np.linspace(0.0, self.length, count + 1)
+
+
+def measure_elements(
+    elements: Sequence[Element], owner: Int64Array, at: Float64Array
+) -> tuple[Float64Array, Float64Array]:
+    """Return places and unit tangents, both (n, 2), at distances along elements.
+
+    Parameters
+    ----------
+    elements : sequence of Element
+    owner : (n,) int64 array
+        Number of the element of each.
+    at : (n,) float64 array
+        Distances from its start, CRS units.
+    """
+    places, tangents = np.empty((len(at), 2)), np.empty((len(at), 2))
+    for k in np.unique(owner).tolist():
+        own = owner == k
+        places[own] = elements[k].places(at[own])
+        angle = elements[k].directions(at[own])
+        tangents[own] = np.column_stack([np.cos(angle), np.sin(angle)])
+    return places, tangents
 
 
 # ---------------------------------------------------------------- from the origin along the x axis

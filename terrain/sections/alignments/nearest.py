@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from ....base import optional
+from .elements import measure_elements
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -58,8 +59,7 @@ def cut_pieces(elements: Sequence[Element]) -> Pieces:
         places.append(np.stack([along[:-1], along[1:]], axis=1))
         # A curve of length s and turn t lies within s t / 4 of its chord.
         step = float(np.diff(at).max())
-        curvature = max(abs(element.start_curvature), abs(element.end_curvature))
-        bulge = max(bulge, 0.25 * step * step * curvature)
+        bulge = max(bulge, 0.25 * step * step * element.largest_curvature)
     joined = [np.concatenate(one) for one in (owners, begins, ends, places)]
     return Pieces(joined[0], joined[1], joined[2], joined[3], bulge)
 
@@ -85,7 +85,7 @@ def _find_block(
     order = np.lexsort([piece, point])
     point, piece = point[order], piece[order]
     at = _drop_perpendiculars(elements, pieces, piece, points[point])
-    foot, tangent = _measure(elements, pieces.elements[piece], at)
+    foot, tangent = measure_elements(elements, pieces.elements[piece], at)
     away = points[point] - foot
     distance = np.hypot(away[:, 0], away[:, 1])
     first = np.flatnonzero(np.append(True, np.diff(point) > 0))
@@ -132,7 +132,7 @@ def _drop_perpendiculars(
     low, high = pieces.begins[piece].copy(), pieces.ends[piece].copy()
     rising = [_ask(elements, owner, at, points) for at in (low, high)]
     is_inside = (rising[0] > 0.0) & (rising[1] < 0.0)
-    ends = np.stack([_measure(elements, owner, at)[0] for at in (low, high)])
+    ends = np.stack([measure_elements(elements, owner, at)[0] for at in (low, high)])
     away = np.hypot(*np.moveaxis(points - ends, -1, 0))
     at = np.where(away[0] <= away[1], low, high)
     open_ = np.flatnonzero(is_inside)
@@ -141,7 +141,7 @@ def _drop_perpendiculars(
         if not len(open_):
             break
         now, where = at[open_], owner[open_]
-        foot, tangent = _measure(elements, where, now)
+        foot, tangent = measure_elements(elements, where, now)
         offset = points[open_] - foot
         value = (offset * tangent).sum(axis=1)
         low[open_] = np.where(value > 0.0, now, low[open_])
@@ -170,22 +170,9 @@ def _guess(pieces: Pieces, piece: Int64Array, points: Float64Array) -> Float64Ar
 def _ask(
     elements: Sequence[Element], owner: Int64Array, at: Float64Array, points: Float64Array
 ) -> Float64Array:
-    foot, tangent = _measure(elements, owner, at)
+    foot, tangent = measure_elements(elements, owner, at)
     along: Float64Array = ((points - foot) * tangent).sum(axis=1)
     return along
-
-
-def _measure(
-    elements: Sequence[Element], owner: Int64Array, at: Float64Array
-) -> tuple[Float64Array, Float64Array]:
-    """Return places and unit tangents, both (n, 2), at distances along elements."""
-    places, tangents = np.empty((len(at), 2)), np.empty((len(at), 2))
-    for k in np.unique(owner).tolist():
-        own = owner == k
-        places[own] = elements[k].places(at[own])
-        angle = elements[k].directions(at[own])
-        tangents[own] = np.column_stack([np.cos(angle), np.sin(angle)])
-    return places, tangents
 
 
 def _curve(elements: Sequence[Element], owner: Int64Array, at: Float64Array) -> Float64Array:

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ....base.checks import as_floats
-from ....base.errors import OptionError
+from ....base.errors import OptionError, PointsError
+from ....base.sentences import counted
 from ....tin import validation
 
 if TYPE_CHECKING:
@@ -36,6 +37,13 @@ def as_places(points: Any) -> Float64Array:
 
     Raises PointsError if they are none, or not finite.
     """
-    if isinstance(points, np.ndarray) and points.ndim == 2:
-        points = points[:, :2]
-    return validation.as_places(points)[0]
+    plain = as_floats(points) if isinstance(points, list | tuple | np.ndarray) else None
+    if plain is not None and plain.ndim == 2:
+        points = plain[:, :2]
+    xy = validation.as_places(points)[0]
+    lost = np.flatnonzero(~np.isfinite(xy).all(axis=1))
+    if len(lost):
+        row = int(lost[0])
+        where = f"first: row {row}, {tuple(xy[row].tolist())}"
+        raise PointsError(f"{counted(len(lost), 'point')} not finite ({where}).", rows=lost[:5])
+    return xy

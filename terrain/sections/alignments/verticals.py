@@ -30,7 +30,8 @@ class VerticalPoint:
     Attributes
     ----------
     station, elevation : float
-        Where the tangents meet: length along the alignment and elevation, CRS units.
+        Where the tangents meet: length along the alignment, CRS units, and elevation, in the unit
+        of those of the alignment.
     kind : {"parabola", "arc"}, optional
         Of the vertical curve.
     length_in, length_out : float
@@ -125,6 +126,11 @@ class VerticalAlignment:
     def end(self) -> float:
         """Station where it ends, CRS units."""
         return self.points[-1].station
+
+    @property
+    def has_arcs(self) -> bool:
+        """Whether a curve is an arc: stations and elevations have to be in one unit."""
+        return any(one.kind == "arc" for one in self.points)
 
     @property
     def curve_lengths(self) -> tuple[float, ...]:

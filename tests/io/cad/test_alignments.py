@@ -135,6 +135,20 @@ def test_the_same_alignment_in_feet_and_in_mirrored_axes(tmp_path):
         require_same(road, ts.read_alignment(ts.write(road, tmp_path / "road.xml")))
 
 
+def test_vertical_arcs_need_elevations_in_the_unit_of_stations(tmp_path):
+    points = [ts.VerticalPoint(0, 10), ts.VerticalPoint(150, 15, "arc", radius=900)]
+    rise = ts.VerticalAlignment([*points, ts.VerticalPoint(340, 12)], "design")
+    how = {"verticals": [rise], "crs": "EPSG:32616"}
+    with pytest.raises(ts.OptionError, match="where vertical curves are arcs"):
+        make_road("clothoid", elevation_unit="ft", **how)
+    path = ts.write(make_road("clothoid", elevation_unit="m", **how), tmp_path / "road.xml")
+    text = path.read_text().replace('elevationUnit="meter" ', "")
+    path.write_text(text.replace('linearUnit="meter"', 'linearUnit="meter" elevationUnit="feet"'))
+    road = ts.read_alignment(path, elevation_unit="ft")
+    assert not road.verticals
+    assert any("another unit than stations" in note for note in road.notes)
+
+
 def test_another_crs_is_refused_and_an_unknown_one_declared(tmp_path):
     path = ts.write(make_road("bloss", crs="EPSG:32616"), tmp_path / "road.xml")
     with pytest.raises(ts.CrsError, match="no arcs there"):

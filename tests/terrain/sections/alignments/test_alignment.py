@@ -39,6 +39,12 @@ def _on_arc():
     return [60 + 40 * math.sin(math.pi / 4), 40 - 40 * math.cos(math.pi / 4)]
 
 
+def test_elevations_of_points_are_left_aside(road):
+    flat = road.stations_of([[30, 5], [90, 8]])["station"].tolist()
+    for given in ([[30, 5, 1], [90, 8, 2]], np.array([[30, 5, 1], [90, 8, 2]])):
+        assert road.stations_of(given)["station"].tolist() == flat
+
+
 def test_stations_and_offsets_lead_back_to_the_points(road):
     rng = np.random.default_rng(5)
     given = rng.uniform(-100, 900, (1000, 2))
@@ -166,6 +172,10 @@ def test_pickles_and_copies_are_the_same(road):
         ),
         (lambda: ts.Alignment.from_points(CORNERS).points_at([1e9]), "on the alignment"),
         (lambda: ts.Alignment.from_points(CORNERS).points_at(["a"]), "finite numbers"),
+        (lambda: ts.Alignment.from_points(CORNERS).stations_of([[np.nan, 1]]), "not finite"),
+        (lambda: ts.Alignment.from_points(CORNERS).stations_of([]), "no point"),
+        (lambda: ts.Alignment.from_points(CORNERS).stations_of("a"), "numbers"),
+        (lambda: ts.Alignment.from_points([[0, 0], [np.nan, 1]]), "not finite"),
         (lambda: ts.Alignment.from_points(CORNERS).to_features(0.0), "tolerance"),
         (lambda: ts.Alignment.from_points(CORNERS).find_vertical(), "there is none"),
         (lambda: ts.Alignment.from_points(CORNERS).tabulate_points(1e-9), "at most"),

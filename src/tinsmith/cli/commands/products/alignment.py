@@ -9,11 +9,12 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from ....base.sentences import counted
-from ...axes import read_axis
+from ...axes import alignment_option, read_axis
 from ...command import command
 from ...job import Job, surface_options
 from ...options import CONSOLE, WRITING
 from ...output.facts import Facts
+from ...output.failures import Failure
 from ...parameters import crs_option, file_option, input_file, number_option, output_option
 from ...paths import Named
 
@@ -28,11 +29,7 @@ _SHOWN = 40
 @output_option(
     "Table (.csv, .json), alignment (.xml, LandXML) or polyline (.gpkg, .geojson, ...) to write."
 )
-@click.option(
-    "--alignment",
-    metavar="NAME",
-    help="Name of the alignment in a LandXML file, or its number from 1.",
-)
+@alignment_option("the file")
 @file_option(
     "--at",
     "CSV file of points, whose stations and offsets are added as columns.",
@@ -87,6 +84,11 @@ def _find_stations(road: Alignment, path: Path) -> Table:
     from ....io.delimited.query_points import read_query_points
 
     points = read_query_points(path, crs=road.crs)
+    if points.is_degrees:
+        raise Failure(
+            "The points are longitudes and latitudes by their header, and an alignment is measured "
+            "in lengths: transform them to its CRS first."
+        )
     found = road.stations_of(points.xy)
     added = {name: values for name, values in found.columns.items() if name not in ("x", "y")}
     taken = sorted(set(added) & set(points.columns))
