@@ -193,7 +193,8 @@ def _measure_areas(table: Table, count: int) -> Float64Array:
         one, other = np.maximum(sign * first, 0.0), np.maximum(sign * last, 0.0)
         size = np.abs(first) + np.abs(last)
         # Where the sign changes a triangle is left, whose side is the share of its height.
-        share = np.where(first * last < 0.0, (one + other) / np.where(size > 0.0, size, 1.0), 1.0)
+        is_crossed = np.sign(first) * np.sign(last) < 0.0
+        share = np.where(is_crossed, (one + other) / np.where(size > 0.0, size, 1.0), 1.0)
         areas[:, k] = np.bincount(owner, (one + other) / 2.0 * run * share, minlength=count)
     return areas
 

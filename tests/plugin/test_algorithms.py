@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import json
+import re
 import shutil
 import sys
 from pathlib import Path
@@ -33,6 +34,7 @@ import tinsmith as ts
 from tinsmith.cli import main
 from tinsmith.cli.format_options import list_format_options
 
+PLUGIN = Path(__file__).parents[2] / "qgis/tinsmith"
 UP = np.array([0.0, 0.0, 1.0])
 
 UNSOUND = "v 0 0 0\nv 1 0 0\nv 1.4 1.4 0\nv 0 1 0\nf 1 2 3\nf 1 3 4\n"
@@ -127,6 +129,8 @@ def test_products_are_those_of_the_package(tmp_path, survey):
         "sections": job("profile", INPUT_FILE=tmp_path / "ground.ply", LINE="cut",
                         SECTION_INTERVAL=50, SECTION_WIDTH=20, OUTPUT=tmp_path / "cross.csv",
                         SECTIONS=tmp_path / "cross.gpkg"),
+        "quantities": job("sections", INPUT="ground", DESIGN="flat", DESIGN_Z_FIELD="high",
+                          LINE="cut", INTERVAL=50, WIDTH=20, OUTPUT=tmp_path / "quantities.csv"),
         "volume": job("volume", INPUT="ground", BASE=325, REGIONS="site",
                       OUTPUT=tmp_path / "volume.csv", ZONES=tmp_path / "zones.gpkg"),
         "stages": job("stagestorage", INPUT="ground", INTERVAL=5, OUTPUT=tmp_path / "stages.csv"),
@@ -189,6 +193,10 @@ def check_sections(told, tin, survey, folder):
     assert told["profile"]["layers"]["Profile"]["count"] == len(wanted)
     lines = ts.section_lines(tin, CUT, interval=50, width=20)
     assert told["sections"]["layers"]["Cross sections as lines"]["count"] == len(lines)
+    quantities = ts.section_volumes(tin, raised, CUT, interval=50, width=20)
+    for name in ("station", "cut_total", "fill_total"):
+        found = read_numbers(folder / "quantities.csv", name)
+        np.testing.assert_array_equal(found, quantities[name])
 
 
 def check_volumes(told, tin, folder):
@@ -294,6 +302,15 @@ def test_what_cannot_be_is_refused_with_one_sentence(tmp_path, survey):
     assert out.read_bytes() == b"old"
     assert not (tmp_path / "c.gpkg").exists()
     compare_options(told["provider"]["algorithms"])
+
+
+def test_every_algorithm_is_run_by_these_tests():
+    folder = Path(__file__).parent
+    source = "".join(one.read_text() for one in folder.glob("*.py"))
+    declared = (PLUGIN / "algorithms").glob("*.py")
+    verbs = {verb for one in declared for verb in re.findall(r'verb = "(\w+)"', one.read_text())}
+    assert len(verbs) > 15
+    assert verbs <= set(re.findall(r'job\(\s*"(\w+)"', source))
 
 
 def compare_options(algorithms):

@@ -24,10 +24,20 @@ class SectionsAlgorithm(CommandAlgorithm):
     lines = (Lines("LINE", "Axis", "--line", "A layer of one line.", required=True),)
     options = (
         number(
-            "INTERVAL", "Interval of sections", "--interval", "Along the axis.", 20.0, least=0.0
+            "INTERVAL",
+            "Interval of sections",
+            "--interval",
+            "Along the axis.",
+            least=0.0,
+            required=True,
         ),
         number(
-            "WIDTH", "Width of sections", "--width", "Half of it to either side.", 30.0, least=0.0
+            "WIDTH",
+            "Width of sections",
+            "--width",
+            "Half of it to either side.",
+            least=0.0,
+            required=True,
         ),
         number("START", "Station where the axis begins", "--start", "", 0.0, advanced=True),
         number(
@@ -44,7 +54,8 @@ class SectionsAlgorithm(CommandAlgorithm):
 
     def make(self, run: Run) -> dict[str, Any]:
         """Measure."""
-        arguments = ["sections", *self._list_surfaces(run), *run.list_lines(self.lines)]
+        files = [word for one in self.surfaces for word in run.list_tin(one)]
+        arguments = ["sections", *files, *run.list_lines(self.lines)]
         paths, named = run.list_outputs("OUTPUT", "PICTURE")
         run.run([*arguments, *run.list_options(self.options), *run.list_extra(), *named])
         self.load_later(run, paths["OUTPUT"], "Section volumes")

@@ -86,9 +86,10 @@ def measure_seam(patch: TIN, base: TIN) -> SeamSteps:
     steps = (ends[:, 2] - base.interpolate(ends[:, :2], extrapolate="nearest")).reshape(-1, 2)
     lengths = np.hypot(*(pairs[:, 1] - pairs[:, 0])[:, :2].T)
     a, b = np.abs(steps).T
-    with np.errstate(divide="ignore", invalid="ignore"):  # of steps that change their sign
-        crossing = np.where(a + b > 0.0, (a * a + b * b) / (2 * (a + b)), 0.0)
-    means = np.where(steps[:, 0] * steps[:, 1] < 0.0, crossing, (a + b) / 2)
+    middle = a / 2 + b / 2
+    half = np.where(middle > 0.0, middle, 1.0)  # no squares: they overflow where steps do not
+    crossing = a * (a / half / 4) + b * (b / half / 4)
+    means = np.where(np.sign(steps[:, 0]) * np.sign(steps[:, 1]) < 0.0, crossing, middle)
     worst = int(np.abs(steps).argmax())
     x, y = ends[worst, :2].tolist()
     mean = float((means * lengths).sum() / lengths.sum())
