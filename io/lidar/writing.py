@@ -10,6 +10,7 @@ import numpy as np
 from ...base import optional
 from ...base.atomic import replacing
 from ...base.checks import as_length
+from ...base.crs import find_wkt
 from ...base.errors import WriteError
 from ...base.notes import warn
 from ...base.progress import Progress
@@ -259,7 +260,7 @@ def make_header(
 
 def _format_crs(crs: CRS) -> str:
     """Return WKT of the first version, as the specification wants, of the second if need be."""
-    text: str | None = crs.to_pyproj().to_wkt("WKT1_GDAL")
+    text = find_wkt(crs, "WKT1_GDAL")
     return text if text is not None and crs.is_same(text) else crs.to_wkt()
 
 

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ...base.crs import find_wkt
 from ...base.errors import OptionError, WriteError
 from ...base.notes import warn
 from ...base.sentences import FILE
@@ -63,7 +64,7 @@ def write(
                 if progress is not None:
                     progress(done)
         if raster.crs is not None:
-            text = raster.crs.to_pyproj().to_wkt("WKT1_ESRI") or raster.crs.to_wkt()
+            text = find_wkt(raster.crs, "WKT1_ESRI") or raster.crs.to_wkt()
             new.with_suffix(".prj").write_text(text, encoding="utf-8")
 
 

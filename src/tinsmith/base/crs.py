@@ -440,6 +440,22 @@ def _shorten(value: object, most: int = _SHOWN_LETTERS) -> str:
     return text if len(text) <= most else text[: most - 3] + "..."
 
 
+def find_wkt(crs: CRS, version: str) -> str | None:
+    """Return a CRS as WKT of a version; None where that cannot say it, as of derived CRSs.
+
+    Examples
+    --------
+    >>> find_wkt(CRS("EPSG:32616"), "WKT1_GDAL")[:30]
+    'PROJCS["WGS 84 / UTM zone 16N"'
+    """
+    library = optional.load("pyproj", "A CRS")
+    try:
+        text: str | None = crs.to_pyproj().to_wkt(version)
+    except library.exceptions.CRSError:
+        return None
+    return text
+
+
 def shorten_crs(crs: CRS | None) -> str:
     """Return the text of a CRS, cut to fit a one-line repr."""
     return "unknown" if crs is None else _shorten(crs, _LABEL_LETTERS)
