@@ -66,6 +66,10 @@ from .sections.alignments import Element as Element
 from .sections.alignments import StationEquation as StationEquation
 from .sections.alignments import VerticalAlignment as VerticalAlignment
 from .sections.alignments import VerticalPoint as VerticalPoint
+from .sections.staking import CombinedFactor as CombinedFactor
+from .sections.staking import combined_factor as combined_factor
+from .sections.staking import stake_points as stake_points
+from .sections.staking import stakeout as stakeout
 from .sight import line_of_sight as line_of_sight
 from .sight import viewshed as viewshed
 from .sight import visible_vertices as visible_vertices

@@ -57,6 +57,7 @@ RESULTS = {
     ),
     "slope_classes": ts.slope_classes,
     "slope_statistics": ts.slope_statistics,
+    "stakeout": lambda tin: ts.stakeout(tin, [PLACE]),
     "stage_storage": lambda tin: ts.stage_storage(tin, interval=50.0),
     "to_features": ts.to_features,
     "viewshed": lambda tin: ts.viewshed(tin, PLACE, eye_height=2.0),
@@ -85,6 +86,7 @@ OTHERS = {
     "blunders": ts.blunders,  # is itself what notes tell
     "check": ts.check,
     "check_contours": lambda tin: ts.check_contours(tin, ts.contours(HILL, 1.0)),
+    "combined_factor": ts.combined_factor,
     "curvature": ts.curvature,
     "grade": lambda tin: ts.grade(tin, RING, 325.0, cut_slope=2.0, fill_slope=2.0),
     "height_above": lambda tin: ts.height_above(tin, HILL.points),

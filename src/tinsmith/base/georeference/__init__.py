@@ -9,7 +9,7 @@ from .agreement import (
     find_plane_units,
     require_same_crs,
 )
-from .axes import find_axes, label_axes, undo_north_up
+from .axes import find_axes, gives_northing_first, label_axes, undo_north_up
 from .units import find_scales
 
 __all__ = [
@@ -21,6 +21,7 @@ __all__ = [
     "find_axes",
     "find_plane_units",
     "find_scales",
+    "gives_northing_first",
     "label_axes",
     "require_same_crs",
     "undo_north_up",
