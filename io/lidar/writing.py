@@ -10,7 +10,7 @@ import numpy as np
 from ...base import optional
 from ...base.atomic import replacing
 from ...base.checks import as_length
-from ...base.crs import find_wkt
+from ...base.crs import choose_wkt
 from ...base.errors import WriteError
 from ...base.notes import warn
 from ...base.progress import Progress
@@ -254,14 +254,8 @@ def make_header(
         if name not in standard:
             header.add_extra_dim(laspy.ExtraBytesParams(name=name, type=values.dtype))
     if crs is not None:
-        header.vlrs.append(laspy.vlrs.known.WktCoordinateSystemVlr(_format_crs(crs)))
+        header.vlrs.append(laspy.vlrs.known.WktCoordinateSystemVlr(choose_wkt(crs)))
     return header
-
-
-def _format_crs(crs: CRS) -> str:
-    """Return WKT of the first version, as the specification wants, of the second if need be."""
-    text = find_wkt(crs, "WKT1_GDAL")
-    return text if text is not None and crs.is_same(text) else crs.to_wkt()
 
 
 def write_points(

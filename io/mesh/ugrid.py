@@ -14,7 +14,7 @@ import numpy as np
 
 from ...base import checks, optional
 from ...base.atomic import replacing_path
-from ...base.crs import CRS, METRE, Unit
+from ...base.crs import CRS, METRE, Unit, find_wkt
 from ...base.errors import CrsError, OptionError, ReadError, WriteError
 from ...base.policies import LineKind
 from ...base.products import product
@@ -240,19 +240,10 @@ def _write_topology(data: Any, tin: TIN) -> None:
         attributes |= {"crs_wkt": wkt, "name": crs.name}
         epsg = crs.to_epsg()
         if epsg is None:
-            attributes = attributes | {"wkt": crs.to_wkt("WKT1_GDAL") if _has_wkt1(crs) else wkt}
+            attributes = attributes | {"wkt": find_wkt(crs, "WKT1_GDAL") or wkt}
         else:
             attributes = attributes | {"epsg": np.int32(epsg), "EPSG_code": f"EPSG:{epsg}"}
         grid.setncatts(attributes)
-
-
-def _has_wkt1(crs: CRS) -> bool:
-    from pyproj.exceptions import CRSError
-
-    try:
-        return bool(crs.to_wkt("WKT1_GDAL"))
-    except CRSError:
-        return False
 
 
 def _format_cf_unit(unit: Unit) -> str:

@@ -12,7 +12,7 @@ from typing import IO, TYPE_CHECKING
 import numpy as np
 
 from ....base.atomic import replacing
-from ....base.crs import CRS
+from ....base.crs import choose_wkt
 from ....base.errors import FormatError, OptionError
 from ....base.notes import warn
 from ....base.results import Features
@@ -172,7 +172,7 @@ def _write_reference(
     code = crs.horizontal.to_epsg()
     if code is not None:
         words.append(f'epsgCode="{code}"')
-    words.append(f"ogcWktCode={quote(_choose_wkt(crs))}")
+    words.append(f"ogcWktCode={quote(choose_wkt(crs))}")
     file.write(f"<CoordinateSystem {' '.join(words)}")
     if obj.elevation_unit is not None:
         file.write("/>\n")
@@ -181,17 +181,6 @@ def _write_reference(
         f'>\n<Feature name="{FEATURE}">\n<Property label="{ELEVATION_UNIT}" value="{UNKNOWN}"/>\n'
         "</Feature>\n</CoordinateSystem>\n"
     )
-
-
-def _choose_wkt(crs: CRS) -> str:
-    """Return the older WKT that CAD programs read, where it means the same."""
-    try:
-        older = crs.to_wkt("WKT1_GDAL")
-        if older and CRS(older).is_same(crs):
-            return older
-    except Exception:
-        pass
-    return crs.to_wkt()
 
 
 # ------------------------------------------------------------------ surface

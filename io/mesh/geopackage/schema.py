@@ -11,11 +11,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ....base.crs import CRS, find_wkt
+
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
     from ....base.arrays import AnyArray, Float64Array
-    from ....base.crs import CRS
 
 APPLICATION_ID = 0x47504B47  # "GPKG"
 USER_VERSION = 10300
@@ -89,9 +90,9 @@ def describe_crs(crs: CRS | None) -> list[_Row]:
             4326,
             "EPSG",
             4326,
-            _format_wkt("EPSG:4326", "WKT1_GDAL"),
+            _format_wkt(CRS("EPSG:4326"), "WKT1_GDAL"),
             "longitude and latitude in degrees",
-            _format_wkt("EPSG:4326", "WKT2_2015"),
+            _format_wkt(CRS("EPSG:4326"), "WKT2_2015"),
         ),
         ("Undefined Cartesian SRS", -1, "NONE", -1, *_UNDEFINED, "undefined"),
     ]
@@ -101,20 +102,12 @@ def describe_crs(crs: CRS | None) -> list[_Row]:
         return [always[0], always[2], always[1]]
     number = crs.to_epsg()
     organization, code = ("EPSG", number) if number is not None else ("NONE", _OWN_SRS)
-    wkt = [_format_wkt(str(crs), version) for version in ("WKT1_GDAL", "WKT2_2015")]
+    wkt = [_format_wkt(crs, version) for version in ("WKT1_GDAL", "WKT2_2015")]
     return [*always, (crs.name, code, organization, code, wkt[0], crs.name, wkt[1])]
 
 
-def _format_wkt(text: str, version: str) -> str:
-    """Return WKT; "undefined" where the version cannot say it."""
-    from pyproj import CRS as ProjCrs
-    from pyproj.exceptions import CRSError
-
-    try:
-        found: str | None = ProjCrs(text).to_wkt(version)
-    except CRSError:
-        found = None
-    return found or "undefined"
+def _format_wkt(crs: CRS, version: str) -> str:
+    return find_wkt(crs, version) or "undefined"
 
 
 def digest_arrays(*arrays: AnyArray, text: str = "") -> str:

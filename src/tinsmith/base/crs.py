@@ -453,7 +453,23 @@ def find_wkt(crs: CRS, version: str) -> str | None:
         text: str | None = crs.to_pyproj().to_wkt(version)
     except library.exceptions.CRSError:
         return None
-    return text
+    return text or None
+
+
+def choose_wkt(crs: CRS) -> str:
+    """Return WKT 1, which older programs read, where it means the same; else WKT 2.
+
+    Examples
+    --------
+    >>> choose_wkt(CRS("EPSG:32616"))[:30]
+    'PROJCS["WGS 84 / UTM zone 16N"'
+    """
+    older = find_wkt(crs, "WKT1_GDAL")
+    try:
+        is_same = older is not None and crs.is_same(older)
+    except CrsError:
+        is_same = False
+    return older if older is not None and is_same else crs.to_wkt()
 
 
 def shorten_crs(crs: CRS | None) -> str:

@@ -360,10 +360,8 @@ def _find_mean_elevation(tin: TIN | None) -> float:
     """Return the mean elevation by area."""
     if tin is None:
         raise OptionError("elevation", None, "a finite number, where there is no surface")
-    corners = tin.points[tin.triangles]
-    sides = corners[:, 1:, :2] - corners[:, :1, :2]
-    areas = sides[:, 0, 0] * sides[:, 1, 1] - sides[:, 0, 1] * sides[:, 1, 0]
-    return float(np.average(corners[:, :, 2].mean(axis=1), weights=areas))
+    means = tin.points[tin.triangles, 2].mean(axis=1)
+    return float(np.average(means, weights=tin.triangle_areas))
 
 
 # ---------------------------------------------------------------- what the earth is like
