@@ -363,6 +363,7 @@ class Alignment:
         theirs = points.crs if is_named else find_crs(points)
         notes = require_same_crs(theirs, self.crs, "the points", is_plain=not is_named)
         if is_named:
+            notes = (*points.notes, *notes)
             points = points.coordinates
         xy = as_places(points) + 0.0
         if len(xy) == 0:

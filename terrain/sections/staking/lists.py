@@ -269,10 +269,8 @@ def _measure_heights(
     if len(found) > 1:
         above = found[1] - found[0]
         columns["ground"] = found[1]
-        columns["cut"] = np.where(above > 0.0, above, above * 0.0)
-        columns["fill"] = np.where(above < 0.0, -above, above * 0.0)
-        for name in ("cut", "fill"):
-            columns[name] = columns[name] + 0.0
+        columns["cut"] = np.maximum(above, 0.0) + 0.0  # no -0
+        columns["fill"] = np.maximum(-above, 0.0) + 0.0
     return columns
 
 

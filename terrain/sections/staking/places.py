@@ -15,7 +15,7 @@ from ....tin.building import find_crs
 from ..alignments import as_numbers, as_places
 
 if TYPE_CHECKING:
-    from ....base.arrays import Float64Array, ObjectArray
+    from ....base.arrays import BoolArray, Float64Array, ObjectArray
     from ....base.crs import CRS
     from ..alignments import Alignment
 
@@ -41,27 +41,29 @@ class Stakes(NamedTuple):
 def take_points(points: Any, alignment: Alignment | None, crs: CRS | None) -> Stakes:
     """Return points that are given, with the stations of an alignment."""
     columns: Any = {}
+    notes: list[str] = []
     is_named = isinstance(points, Survey | Features)
     theirs = points.crs if is_named else find_crs(points)
-    notes = require_same_crs(theirs, crs, "the points", is_plain=not is_named)
+    agreed = require_same_crs(theirs, crs, "the points", is_plain=not is_named)
     if isinstance(points, Survey):
-        columns, points = points.attributes, points.points
+        columns, notes, points = points.attributes, [*points.notes], points.points
     elif isinstance(points, Features):
         if points.kind != "points":
             raise OptionError("points", points, "points, not lines or polygons")
-        columns, points = points.columns, points.coordinates
+        columns, notes, points = points.columns, [*points.notes], points.coordinates
     xy = as_places(points) + 0.0
     if len(xy) == 0:
         raise PointsError("There is no point to set out: at least one is needed.")
-    numbers = _find_texts(columns, _NUMBERS, [str(one + 1) for one in range(len(xy))])
-    descriptions = _find_texts(columns, _DESCRIPTIONS, [""] * len(xy))
+    numbers, is_numbered = _find_texts(columns, _NUMBERS, [str(k + 1) for k in range(len(xy))])
+    descriptions, _ = _find_texts(columns, _DESCRIPTIONS, [""] * len(xy))
     along: dict[str, Float64Array] = {}
     if alignment is not None:
         found = alignment.stations_of(xy)
         names = ("station", "written_station", "offset")
         along = {name: found[name] for name in names if name in found.columns}
-        notes = (*notes, *alignment.notes)
-    return Stakes(xy, numbers, descriptions, along, (*notes, *_describe_repeated(numbers)))
+        notes += found.notes
+    notes += [*agreed, *_describe_numbers(numbers, is_numbered)]
+    return Stakes(xy, numbers, descriptions, along, tuple(notes))
 
 
 def place_along(
@@ -94,24 +96,38 @@ def place_along(
     return Stakes(xy, numbers, descriptions, along, tuple(alignment.notes))
 
 
-def _find_texts(columns: Any, names: tuple[str, ...], otherwise: list[str]) -> ObjectArray:
-    """Return the texts of the first column of these names; where one is missing, another text."""
+def _find_texts(
+    columns: Any, names: tuple[str, ...], otherwise: list[str]
+) -> tuple[ObjectArray, BoolArray]:
+    """Return the texts of the first column of these names, and which rows have one.
+
+    Where one is missing it is another text. Numbers of points are whole, also where a missing one
+    among them has made them floats.
+    """
     texts = np.empty(len(otherwise), object)
     texts[:] = otherwise
+    has_text = np.zeros(len(otherwise), np.bool_)
     found = next((name for name in names if name in columns), None)
     if found is not None:
-        values = np.asarray(columns[found]).tolist()
-        texts[:] = [
-            other if one is None or one != one or str(one).strip() == "" else str(one)
-            for one, other in zip(values, otherwise, strict=True)
-        ]
-    return texts
+        for row, value in enumerate(np.asarray(columns[found]).tolist()):
+            text = "" if value is None or value != value else str(value).strip()
+            if isinstance(value, float) and value.is_integer():
+                text = str(int(value))
+            if text:
+                texts[row], has_text[row] = text, True
+    return texts, has_text
 
 
-def _describe_repeated(numbers: ObjectArray) -> list[str]:
+def _describe_numbers(numbers: ObjectArray, is_numbered: BoolArray) -> list[str]:
+    notes = []
+    missing = np.flatnonzero(~is_numbered)
+    if 0 < len(missing) < len(numbers):
+        has = inflect(f"{counted(len(missing), 'point')} [has|have]", len(missing))
+        first = f"(first: {numbers[missing[0]]})"
+        notes.append(f"{has} no number, and the number of its row instead {first}.")
     names, counts = np.unique(numbers.astype(str), return_counts=True)
     repeated = names[counts > 1]
-    if not len(repeated):
-        return []
-    words = inflect(f"{counted(len(repeated), 'point number')} [occurs|occur]", len(repeated))
-    return [f"{words} several times (first: '{repeated[0]}')."]
+    if len(repeated):
+        occur = inflect(f"{counted(len(repeated), 'point number')} [occurs|occur]", len(repeated))
+        notes.append(f"{occur} several times (first: '{repeated[0]}').")
+    return notes

@@ -49,6 +49,24 @@ def test_points_outside_are_named_with_a_reason():
     assert np.isnan(both["cut"]).tolist() == [False, True, True]
 
 
+def test_what_was_found_in_the_points_is_told_in_the_list(tmp_path):
+    file = tmp_path / "points.csv"
+    file.write_text(
+        "number,easting,northing,elevation\n101,10,10,1\n,20,10,1\n103,10,40,1\n104,30,30,\n"
+    )
+    survey = ts.read(file)
+    road = ts.Alignment.from_points([[0, 0], [50, 0], [50, 80]])
+    shown = ts.Features.of_points(survey.points, columns={"number": survey.attributes["number"]})
+    for points in (survey, shown.with_notes(survey.notes)):
+        table = ts.stakeout(DESIGN, points, alignment=road)
+        assert table["point"].tolist() == ["101", "2", "103"]  # not 101.0
+        assert "1 point has no number, and the number of its row instead (first: 2)." in table.notes
+        assert any("line 5" in note for note in table.notes)  # 104, which has no elevation
+        assert any("as near to another place" in note for note in table.notes)
+    noted = road.stations_of(shown.with_notes(["Seen."]))
+    assert "Seen." in noted.notes
+
+
 def test_points_along_an_axis_have_its_stations_and_offsets():
     road = ts.Alignment.from_points(
         [[5, 40], [60, 40], [90, 70]],
