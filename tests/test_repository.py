@@ -348,7 +348,8 @@ def names_of_pages(tmp_path, monkeypatch):
     rings = {"ring": middle + corners, "polygon": middle + corners + np.array([25, 0])}
     edge = dict(zip("ab", ground.edges[0].tolist(), strict=True))
     points = {"xy": ground.points[:5, :2], "cloud": ground.points[:9] + np.array([0, 0, 1]), "v": 0}
-    surfaces = {"tin": ground, "ground": ground, "design": ts.triangulate(pad)}
+    design = ts.triangulate(pad)
+    surfaces = {"tin": ground, "ground": ground, "design": design, "pad": design}
     return {"ts": ts, "np": np, "survey": survey} | surfaces | lines | rings | edge | points
 
 
