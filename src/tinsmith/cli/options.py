@@ -181,6 +181,10 @@ _COORDINATES = under(
         help="Unit of the elevations, if the file does not state it: m, ft, 'US survey foot'. "
         "Points that are reprojected get the unit of --crs.",
     ),
+)
+
+_REPROJECTION = under(
+    "Reprojection",
     click.option(
         "--check-crs/--no-check-crs",
         default=None,
@@ -223,7 +227,7 @@ def make_reading(unit_flag: str = "--unit") -> Group:
         help="Unit of coordinates and elevations, if the file does not state one; of a LandXML or "
         "DXF file also where it states one that differs from its CRS.",
     )
-    options = (*_COORDINATES, *under("Coordinates and units", unit), *_INPUT)
+    options = (*_COORDINATES, *under("Coordinates and units", unit), *_REPROJECTION, *_INPUT)
     return Group("reading", Reading, options, "read")
 
 
