@@ -3,26 +3,21 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any, overload
+from typing import TYPE_CHECKING, overload
 
 import numpy as np
 
 from ...base.crs import CRS, Unit
 from ...base.errors import CrsError, OptionError
 from ...base.products import product
-from ...base.sentences import height
-from ...tin import TIN, Breakline, Surface, Survey, Water
+from ...tin import TIN, Surface, Survey
+from ...tin.building import move_survey
 from .transformation import find_conversion_factor
 from .transformation import reproject as reproject_points
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from ...base.arrays import Float64Array
     from ...base.crs import CrsLike, UnitLike
-
-_FLAT = 1e-3
-"""By how much the corners of water may differ in elevation after a change of the vertical datum."""
 
 
 @overload
@@ -105,6 +100,7 @@ def reproject(
             f"{target.label} measures in degrees, and a TIN needs a projected CRS.", crs=target
         )
     placed = reproject_points(surface.points, source, target, unit=unit)
+    notes = [*placed.notes, *_describe_return(source, target)]
     along, across = source.horizontal_unit, target.horizontal_unit
 
     def move(points: Float64Array) -> Float64Array:
@@ -113,9 +109,7 @@ def reproject(
     moved = surface.transform(
         move, crs=target, elevation_unit=placed.unit, length=find_conversion_factor(along, across)
     )
-    if not placed.notes:
-        return moved
-    return moved._with_report(notes=(*moved.report.notes, *placed.notes))
+    return moved.with_notes(notes) if notes else moved
 
 
 def _move_survey(survey: Survey, source: CRS, target: CRS, unit: Unit | None) -> Survey:
@@ -124,14 +118,21 @@ def _move_survey(survey: Survey, source: CRS, target: CRS, unit: Unit | None) ->
     def move(points: Float64Array) -> Float64Array:
         return reproject_points(points, source, target, unit=unit).points
 
-    return replace(
+    return move_survey(
         survey,
+        move,
         points=placed.points,
         crs=target,
         elevation_unit=placed.unit,
-        notes=[*survey.notes, *placed.notes],
-        **_Mover(move, target).move_lines(survey),
+        notes=[*survey.notes, *placed.notes, *_describe_return(source, target)],
     )
+
+
+def _describe_return(source: CRS, target: CRS) -> list[str]:
+    """Tell where coordinates on the ground, of which other notes speak, were brought to."""
+    if not source.horizontal.to_pyproj().is_derived or source.is_same(target):
+        return []
+    return [f"Coordinates were brought from {source.label} to {target.label}."]
 
 
 def scale_survey(survey: Survey, factor: float, unit: Unit | None) -> Survey:
@@ -151,57 +152,4 @@ def scale_survey(survey: Survey, factor: float, unit: Unit | None) -> Survey:
         moved: Float64Array = points * np.array([1.0, 1.0, factor])
         return moved
 
-    lines = _Mover(move, None).move_lines(survey)
-    return replace(survey, points=move(survey.points), elevation_unit=unit, **lines)
-
-
-class _Mover:
-    """Lines of a survey, moved as its points are."""
-
-    def __init__(self, move: Callable[[Float64Array], Float64Array], target: CRS | None) -> None:
-        self._move = move
-        self._target = target
-
-    def move_lines(self, survey: Survey) -> dict[str, Any]:
-        """Return the lines and rings of a survey, by what they are."""
-        return {
-            "breaklines": [self.move_line(line) for line in survey.breaklines],
-            "boundary": [self.move_region(one) for one in survey.boundary],
-            "holes": [self.move_region(one) for one in survey.holes],
-            "erase": [self.move_region(one) for one in survey.erase],
-            "water": [self.move_water(one) for one in survey.water],
-            "extent": [self.move_ring(one) for one in survey.extent],
-        }
-
-    def move_ring(self, ring: Any) -> Float64Array:
-        """Move an array of two or three columns."""
-        given = np.asarray(ring, np.float64)
-        if given.shape[1] == 3:
-            return self._move(given)
-        level = np.column_stack([given, np.zeros(len(given))])
-        return self._move(level)[:, :2].copy()
-
-    def move_line(self, line: Any) -> Any:
-        """Move a breakline or its coordinates."""
-        if isinstance(line, Breakline):
-            coords = self.move_ring(line.coords)
-            return Breakline(coords, kind=line.kind, priority=line.priority, name=line.name)
-        return self.move_ring(line)
-
-    def move_region(self, region: Any) -> Any:
-        """Move a ring, or a list of rings."""
-        if isinstance(region, list | tuple) and np.ndim(region[0]) == 2:
-            return [self.move_ring(ring) for ring in region]
-        return self.move_ring(region)
-
-    def move_water(self, water: Water) -> Water:
-        """Move a polygon of water, which must stay flat."""
-        corners = np.column_stack([water.ring, np.full(len(water.ring), water.z)])
-        moved = self._move(corners)
-        if self._target is not None and np.ptp(moved[:, 2]) > _FLAT:
-            raise CrsError(
-                f"Water at {height(water.z)} would not be flat in the vertical datum of "
-                f"{self._target.label}: name the horizontal part of the CRS alone.",
-                crs=self._target,
-            )
-        return Water(moved[:, :2], float(moved[:, 2].mean()), name=water.name)
+    return move_survey(survey, move, elevation_unit=unit)

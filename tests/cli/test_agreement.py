@@ -274,6 +274,31 @@ def compare_quantities(folder, figures):
     return said
 
 
+def compare_stakes(folder, figures):
+    run = Run(
+        "stakeout", "--at", "places.csv", "--ground", "flat.csv",
+        "-o", "k.csv", "-o", "k.gpkg", figures=figures,
+    )  # fmt: skip
+    rows, layer = read_table(folder / "k.csv"), read_layer(folder / "k.gpkg")
+    told = run.numbers("Points")
+    record = run.record["rows"]
+    names = ("elevation", "cut", "fill")
+    heights = np.nan_to_num(ts.read(folder / "k.gpkg").points[:, 2])
+    return {
+        "table": {"points": [len(rows)]}
+        | {one: [float(row[one] or 0) for row in rows] for one in names},
+        "layer": {
+            "points": [len(layer)],
+            "elevation": heights,
+            "cut": np.nan_to_num(layer.columns["cut"]),
+            "fill": np.nan_to_num(layer.columns["fill"]),
+        },
+        "record": {"points": [run.record["points"]]}
+        | {one: [row[one] or 0.0 for row in record] for one in names},
+        "summary": {"points": told[:1]},
+    }
+
+
 def compare_profiles(folder, figures):
     run = Run(
         "profile", "flat.csv", "--line", "axis.geojson", "--interval", 20,
@@ -548,6 +573,7 @@ AGREEMENTS = {
     "sight": [compare_views],
     "simplify": [compare_meshes("simplify", "s.ply", "Left", "--tolerance", 0.1)],
     "slope": [compare_slopes],
+    "stakeout": [compare_stakes],
     "view": [compare_page],
     "volume": [
         compare_volumes("--base", 322),

@@ -39,6 +39,7 @@ COMMANDS = {
     "profile": "profile TIN --line LINE -o OUT.csv",
     "volume": "volume TIN --base 300 -o OUT.csv",
     "sections": "sections TIN TIN2 --line LINE --interval 3 --width 2 -o OUT.csv",
+    "stakeout": "stakeout TIN --at QUERY -o OUT.csv",
     "diff": "diff TIN TIN2 -o OUT.csv",
     "drape": "drape TIN LINE -o OUT.gpkg",
     "interpolate": "interpolate TIN --at QUERY -o OUT.csv",

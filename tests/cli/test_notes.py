@@ -42,6 +42,7 @@ COMMANDS = {
     "sight": ["--from", 700_040, 4_000_041, "--eye-height", 2, "-o", "out.gpkg"],
     "simplify": ["--tolerance", 0.1, "-o", "out.ply"],
     "slope": ["-o", "out.gpkg"],
+    "stakeout": ["--at", "places.csv", "-o", "out.csv"],
     "view": ["-o", "out.html"],
     "volume": ["--base", 318, "-o", "out.csv"],
 }

@@ -114,6 +114,7 @@ COMMANDS = {
         "sections SITE OTHER --line LINE --interval 20 --width 10",
         "Table picture",
     ),
+    "stakeout": ("stakeout SITE --line LINE --interval 20", "Table Features"),
     "volume": ("volume SITE --base 318", "Table Features picture"),
     "volume of two": ("volume SITE OTHER", "Table Features picture"),
     "volume --stage-storage": ("volume SITE --stage-storage --interval 50", "Table"),

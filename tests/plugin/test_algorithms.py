@@ -131,6 +131,9 @@ def test_products_are_those_of_the_package(tmp_path, survey):
                         SECTIONS=tmp_path / "cross.gpkg"),
         "quantities": job("sections", INPUT="ground", DESIGN="flat", DESIGN_Z_FIELD="high",
                           LINE="cut", INTERVAL=50, WIDTH=20, OUTPUT=tmp_path / "quantities.csv"),
+        "stakes": job("stakeout", INPUT="ground", GROUND="flat", GROUND_Z_FIELD="high",
+                      POINTS="points", LINE="cut", OUTPUT=tmp_path / "stakes.csv",
+                      LAYER=tmp_path / "stakes.gpkg"),
         "volume": job("volume", INPUT="ground", BASE=325, REGIONS="site",
                       OUTPUT=tmp_path / "volume.csv", ZONES=tmp_path / "zones.gpkg"),
         "stages": job("stagestorage", INPUT="ground", INTERVAL=5, OUTPUT=tmp_path / "stages.csv"),
@@ -143,6 +146,7 @@ def test_products_are_those_of_the_package(tmp_path, survey):
     check_contours(told, tin, tmp_path)
     check_slope(told["slope"], tin, tmp_path)
     check_sections(told, tin, survey, tmp_path)
+    check_stakes(told["stakes"], tin, survey, tmp_path)
     check_volumes(told, tin, tmp_path)
     check_rasters(told, tin, tmp_path)
 
@@ -174,11 +178,11 @@ def check_slope(answer, tin, folder):
         assert len(list(csv.DictReader(file))) == len(wanted)
 
 
-def read_numbers(path, name):
+def read_numbers(path, name, missing=None):
     with path.open() as file:
         rows = list(csv.DictReader(file))
     (column,) = [key for key in rows[0] if key.split(" (")[0] == name]
-    return np.array([float(row[column]) for row in rows])
+    return np.array([float(row[column] or missing) for row in rows])
 
 
 def check_sections(told, tin, survey, folder):
@@ -197,6 +201,18 @@ def check_sections(told, tin, survey, folder):
     for name in ("station", "cut_total", "fill_total"):
         found = read_numbers(folder / "quantities.csv", name)
         np.testing.assert_array_equal(found, quantities[name])
+
+
+def check_stakes(answer, tin, survey, folder):
+    raised = ts.triangulate(ts.Survey(points=survey.points + UP, crs=UTM))
+    road = ts.Alignment.from_points(CUT, crs=UTM)
+    at = survey.points[:, :2]
+    wanted = ts.stakeout(tin, at, ground=raised, alignment=road)
+    for name in ("elevation", "cut", "fill", "station", "offset"):
+        found = read_numbers(folder / "stakes.csv", name, missing=np.nan)
+        np.testing.assert_array_equal(found, wanted[name])
+    layer = answer["layers"]["Points to set out"]
+    assert (layer["count"], layer["crs"]) == (len(at), UTM)
 
 
 def check_volumes(told, tin, folder):

@@ -7,6 +7,7 @@ from .inputs import BuildInputs, gather_inputs
 from .options import BuildOptions
 from .reference import find_crs
 from .survey import Survey
+from .survey_moving import move_survey
 from .version import Version
 
 __all__ = [
@@ -20,4 +21,5 @@ __all__ = [
     "gather_inputs",
     "join_columns",
     "merge_rows",
+    "move_survey",
 ]

@@ -47,6 +47,8 @@ if TYPE_CHECKING:
     from .entities import EntityWriter
 
 _CHUNK = 10_000
+_CUT_FILL = "cut_fill"
+"""A column of points that are set out: "C 0.350", "F 1.200"."""
 _WIDE = 1.5
 """Width of a window by its height."""
 _AIR = 1.1
@@ -73,7 +75,8 @@ def write(
     unit : Unit or str, optional
         Unit of coordinates and elevations, where the CRS does not tell.
     labels : bool
-        Write number, elevation and description of points as texts on layers of their own.
+        Write number, elevation and description of points, and cut and fill of points that are set
+        out, as texts on layers of their own.
 
     Raises
     ------
@@ -204,6 +207,13 @@ _LAYER_OF_KIND = {
     "erase": "ERASE",
     "water": "WATER",
 }
+_LABELS = {
+    "number": "POINT_NUMBERS",
+    "elevation": "POINT_ELEVATIONS",
+    "description": "POINT_DESCRIPTIONS",
+    _CUT_FILL: "POINT_CUT_FILL",
+}
+"""Of what is written beside points, from top to bottom, the layer."""
 _SHARE = 0.2
 """Height of labels as a share of the mean distance of points."""
 
@@ -229,7 +239,7 @@ def select_texts(obj: TIN | Survey | Features) -> dict[str, AnyArray]:
         return {}
     attributes = obj.attributes if isinstance(obj, Survey) else obj.columns
     reason = "a drawing has the number and the description of a point"
-    return select_attributes(attributes, ("number", "description"), reason)
+    return select_attributes(attributes, ("number", "description", _CUT_FILL), reason)
 
 
 def add_survey(
@@ -241,7 +251,8 @@ def add_survey(
     labels: bool,
 ) -> None:
     """Add points with their texts and labels, and lines."""
-    _add_points(writer, scale_elevations(survey.points, factor), texts, labels=labels)
+    points = scale_elevations(survey.points, factor)
+    _add_points(writer, points, points[:, 2], texts, labels=labels)
     for line in list_lines(survey, factor):
         stated = (line.kind, line.name, line.polygon or "", str(line.priority))
         writer.add_line(_LAYER_OF_KIND[line.kind], line.coordinates, stated)
@@ -260,8 +271,9 @@ def add_features(
         rows = features.coordinates
         if not features.has_elevations:
             rows = np.column_stack([rows, np.zeros(len(rows))])
-        points = scale_elevations(np.nan_to_num(rows, nan=0.0), factor)
-        _add_points(writer, points, texts, labels=labels)
+        rows = scale_elevations(rows, factor)
+        elevations = rows[:, 2] if features.has_elevations else np.full(len(rows), np.nan)
+        _add_points(writer, np.nan_to_num(rows, nan=0.0), elevations, texts, labels=labels)
         return
     names = _choose_layers(features)
     for line in list_lines(features, factor):
@@ -288,24 +300,28 @@ def _choose_layers(features: Features) -> list[str]:
 
 
 def _add_points(
-    writer: EntityWriter, points: Float64Array, texts: dict[str, AnyArray], *, labels: bool
+    writer: EntityWriter,
+    points: Float64Array,
+    elevations: Float64Array,
+    texts: dict[str, AnyArray],
+    *,
+    labels: bool,
 ) -> None:
+    """Add points, and what is written beside them; an elevation that is NaN is not."""
     if len(points) == 0:
         return
-    numbers, descriptions = (
-        _find_texts(texts, name, len(points)) for name in ("number", "description")
-    )
-    writer.add_points("POINTS", points, list(zip(numbers, descriptions, strict=True)))
+    found = {name: _find_texts(texts, name, len(points)) for name in _LABELS}
+    stated = zip(found["number"], found["description"], strict=True)
+    writer.add_points("POINTS", points, list(stated))
     if not labels:
         return
     width, depth = np.ptp(points[:, :2], axis=0).tolist()
     distance = max(width, depth) / max(len(points), 1) ** 0.5 if max(width, depth) > 0 else 5.0
     height = float(f"{distance * _SHARE:.2g}")
-    elevations = [f"{z:.2f}" for z in points[:, 2].tolist()]
-    columns = (("NUMBERS", numbers), ("ELEVATIONS", elevations), ("DESCRIPTIONS", descriptions))
-    for k, (name, shown) in enumerate(columns):
+    found["elevation"] = ["" if z != z else f"{z:.2f}" for z in elevations.tolist()]
+    for k, (name, layer) in enumerate(_LABELS.items()):
         beside = np.array([height * 0.5, height * (0.5 - 1.5 * k), 0.0])
-        writer.add_texts(f"POINT_{name}", points + beside, shown, height)
+        writer.add_texts(layer, points + beside, found[name], height)
 
 
 def _find_texts(texts: dict[str, AnyArray], name: str, count: int) -> list[str]:

@@ -15,7 +15,7 @@ from .paste import ClipAlgorithm, MergeAlgorithm, PasteAlgorithm
 from .profile import ProfileAlgorithm
 from .raster import RasterAlgorithm
 from .refine import RefineAlgorithm
-from .sections import SectionsAlgorithm
+from .sections import SectionsAlgorithm, StakeoutAlgorithm
 from .sight import SightAlgorithm
 from .simplify import SimplifyAlgorithm
 from .slope import SlopeAlgorithm
@@ -32,6 +32,7 @@ ALGORITHMS = (
     ProfileAlgorithm,
     VolumeAlgorithm,
     SectionsAlgorithm,
+    StakeoutAlgorithm,
     StorageAlgorithm,
     FlowAlgorithm,
     SightAlgorithm,

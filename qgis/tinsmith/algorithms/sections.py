@@ -1,11 +1,13 @@
-"""Volumes between cross sections, and mass haul."""
+"""Volumes between cross sections with mass haul, and points to set out."""
 
 from __future__ import annotations
 
 from typing import Any
 
-from ..inputs import Lines, Surface
-from ..options import number
+from qgis.core import QgsProcessing, QgsProcessingParameterVectorDestination
+
+from ..inputs import POINTS, Lines, Surface
+from ..options import describe, number, switch, text
 from .base import PICTURES, TABLE_FILES, CommandAlgorithm, Run
 
 
@@ -59,4 +61,46 @@ class SectionsAlgorithm(CommandAlgorithm):
         paths, named = run.list_outputs("OUTPUT", "PICTURE")
         run.run([*arguments, *run.list_options(self.options), *run.list_extra(), *named])
         self.load_later(run, paths["OUTPUT"], "Section volumes")
+        return dict(paths)
+
+
+class StakeoutAlgorithm(CommandAlgorithm):
+    """List design elevations, cut and fill at points."""
+
+    verb = "stakeout"
+    title = "Stakeout"
+    summary = "Lists points to set out: elevations of a design, cut and fill, stations and offsets."
+    explanation = (
+        "Each point of a layer gets the elevation of the design; with the ground cut and fill, "
+        "with an axis its station and offset. A point beyond the design stays in the list, and is "
+        "named with the reason. The command sets out points along alignments, too."
+    )
+    surfaces = (Surface(words="Design"), Surface("GROUND", "Ground", False))
+    lines = (
+        Lines("POINTS", "Points", "--at", "A layer.", kind=POINTS, required=True),
+        Lines("LINE", "Axis", "--line", "A layer of one line: for stations and offsets."),
+    )
+    options = (
+        text("LAYOUT", "Columns by letters", "--layout", "Such as PNEZDCF; default all."),
+        switch("TO_GROUND", "Coordinates on the ground", "--to-ground", "", advanced=True),
+    )
+
+    def add_outputs(self) -> None:
+        """Add the list and the points."""
+        self.add_file_output("OUTPUT", "List", TABLE_FILES, "A row for each point.")
+        self.add_loading("Load the list")
+        made = QgsProcessingParameterVectorDestination(
+            "LAYER", "Points to set out", QgsProcessing.TypeVectorPoint, None, True, True
+        )
+        self.addParameter(describe(made, "The points at the elevations of the design."))
+
+    def make(self, run: Run) -> dict[str, Any]:
+        """List."""
+        design, ground = self.surfaces
+        arguments = ["stakeout", *run.list_tin(design), *run.list_lines(self.lines)]
+        if self.found[ground.name] is not None:
+            arguments += ["--ground", *run.list_tin(ground)]
+        paths, named = run.list_outputs("OUTPUT", "LAYER")
+        run.run([*arguments, *run.list_options(self.options), *run.list_extra(), *named])
+        self.load_later(run, paths["OUTPUT"], "Stakeout")
         return dict(paths)

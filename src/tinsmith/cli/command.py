@@ -20,7 +20,7 @@ _OWN = "Options"
 LISTED_BY = {
     **dict.fromkeys(("Triangulation", "Lines and areas", "Codes of points"), "build"),
     "Tiles, for more points than memory holds": "raster",
-    **dict.fromkeys(("Reprojection", "Input", "Output"), "convert"),
+    **dict.fromkeys(("Reprojection", "Coordinates on the ground", "Input", "Output"), "convert"),
 }
 """Subjects of options that only the help of one of the commands lists that have them."""
 _OF_FORMATS = "tinsmith.options_of_formats"

@@ -28,6 +28,7 @@ SECTIONS = {
         "profile": "Compute profiles and cross sections: tables, 3D lines, pictures.",
         "alignment": "Describe an alignment; stations and offsets of points.",
         "sections": "Compute volumes between cross sections, and mass haul.",
+        "stakeout": "List points to set out: elevations, cut and fill, stations.",
         "volume": "Compute cut and fill, or stage-storage tables of ponds.",
         "diff": "Subtract one surface from another: TIN, zones, statistics, map.",
         "drape": "Drape points, lines or polygons on a TIN.",

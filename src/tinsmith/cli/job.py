@@ -54,6 +54,8 @@ class Job:
     writing: Writing = field(default_factory=Writing)
     tiling: Any = None
     """Whether and how tiles are computed, of a command that can."""
+    ground_coordinates: Any = None
+    """Whether coordinates are scaled to the ground, of a command that can."""
     started: float = field(default_factory=perf_counter)
     """When the command began."""
 

@@ -14,12 +14,13 @@ import numpy as np
 from ....base import optional
 from ....base.checks import as_number, require_tin
 from ....base.crs import CRS, METRE, Unit, assume_elevation_unit
-from ....base.errors import CrsError, OptionError
+from ....base.errors import CrsError, OptionError, PointsError
 from ....base.notes import as_notes
 from ....base.products import product
 from ....base.results import Features
 from ....base.sentences import coordinate, height
-from ....tin import TIN
+from ....tin import TIN, Survey
+from ....tin.building import move_survey
 from ..alignments import Alignment, as_numbers
 from .ground_crs import derive_ground_crs
 from .scaling import require_places, scale_alignment
@@ -30,7 +31,7 @@ if TYPE_CHECKING:
     from ....base.arrays import Float64Array
     from ....base.crs import CrsLike, UnitLike
 
-    Place = TypeVar("Place", TIN, Alignment, Features)
+    Place = TypeVar("Place", TIN, Survey, Alignment, Features)
 
 _LEAST, _MOST = 0.5, 2.0
 _REACH = 200.0
@@ -130,12 +131,12 @@ class CombinedFactor:
 
         Parameters
         ----------
-        places : (n, 2) or (n, 3) array, TIN, Features or Alignment
+        places : (n, 2) or (n, 3) array, TIN, Survey, Features or Alignment
             CRS units.
 
         Returns
         -------
-        (n, 2) or (n, 3) float64 array, TIN, Features or Alignment
+        (n, 2) or (n, 3) float64 array, TIN, Survey, Features or Alignment
             As was given. Its CRS is :attr:`ground_crs`, never that of the grid.
 
         Raises
@@ -168,12 +169,12 @@ class CombinedFactor:
 
         Parameters
         ----------
-        places : (n, 2) or (n, 3) array, TIN, Features or Alignment
+        places : (n, 2) or (n, 3) array, TIN, Survey, Features or Alignment
             CRS units. Their CRS is :attr:`ground_crs`, or not known.
 
         Returns
         -------
-        (n, 2) or (n, 3) float64 array, TIN, Features or Alignment
+        (n, 2) or (n, 3) float64 array, TIN, Survey, Features or Alignment
             As was given, in the CRS of the grid.
 
         Raises
@@ -203,7 +204,7 @@ class CombinedFactor:
             moved[:, :2] = base + (points[:, :2] - base) * factor
             return moved
 
-        if not isinstance(places, TIN | Features | Alignment):
+        if not isinstance(places, TIN | Survey | Features | Alignment):
             return move(require_places(places))
         self._require_source(places.crs, source, is_to_ground=is_to_ground)
         notes = [*places.notes, *self._describe(is_to_ground=is_to_ground)]
@@ -211,6 +212,8 @@ class CombinedFactor:
         if isinstance(places, TIN):
             moved = places.transform(move, crs=target, elevation_unit=unit, length=factor)
             return moved.with_notes(notes)
+        if isinstance(places, Survey):
+            return move_survey(places, move, crs=target, elevation_unit=unit, notes=notes)
         if isinstance(places, Features):
             coordinates = move(places.coordinates)
             return replace(places, coordinates=coordinates, crs=target, notes=notes)
@@ -242,14 +245,15 @@ class CombinedFactor:
             return [f"Coordinates were brought from the ground to the grid {where}.", *self.notes]
         none = "" if self.crs is not None else " They have no CRS: that of the grid is not known."
         return [
-            f"Coordinates and lengths are on the ground, scaled from the grid {where}.{none}",
+            f"Coordinates were brought from the grid to the ground {where}; lengths are those on "
+            f"the ground.{none}",
             *self.notes,
         ]
 
 
 @product
 def combined_factor(
-    where: TIN | CrsLike,
+    where: TIN | Survey | CrsLike,
     *,
     point: ArrayLike | None = None,
     elevation: float | None = None,
@@ -260,15 +264,15 @@ def combined_factor(
 
     Parameters
     ----------
-    where : TIN, CRS, str, int or pyproj.CRS
-        A projected CRS, or a surface that is in one.
+    where : TIN, Survey, CRS, str, int or pyproj.CRS
+        A projected CRS, or a surface or survey that is in one.
     point : (2,) array, optional
-        Easting and northing, CRS units; default the middle of the bounds of the surface.
+        Easting and northing, CRS units; default the middle of the bounds of the surface or survey.
     elevation : float, optional
-        Mean elevation of the ground; default the mean of the surface, by area.
+        Mean elevation of the ground; default the mean of the surface, by area, or of the points.
     elevation_unit : Unit or str, optional
-        Of ``elevation`` and ``undulation``; default that of the surface, else the usual one of the
-        CRS.
+        Of ``elevation`` and ``undulation``; default that of the surface or survey, else the usual
+        one of the CRS.
     undulation : float, optional
         Height of the geoid above the ellipsoid there. Without it elevations are taken as heights
         above the ellipsoid, which a note says, unless the CRS says that they are.
@@ -300,17 +304,17 @@ def combined_factor(
     >>> round(factor.grid_scale, 8), round(factor.elevation_factor, 8)
     (0.9996, 0.99995763)
     """
-    tin: Any = where if hasattr(where, "triangles") else None
-    crs = CRS.of(cast("CrsLike", where)) if tin is None else _find_crs(tin)
+    places: Any = where if isinstance(where, Survey) or hasattr(where, "triangles") else None
+    crs = CRS.of(cast("CrsLike", where)) if places is None else _find_crs(places)
     if crs is None:
         raise CrsError("The CRS is not known, and a scale factor is that of a projected CRS.")
     _require_projected(crs)
-    base = _as_base(_find_middle(tin) if point is None else point)
-    own = None if tin is None else tin.elevation_unit
+    base = _as_base(_find_middle(places) if point is None else point)
+    own = None if places is None else places.elevation_unit
     unit = Unit.of(elevation_unit) or own or assume_elevation_unit(crs, None) or METRE
     if own is not None and unit != own and elevation is None:
         raise OptionError("elevation_unit", unit.name, f"{own.name}, as the surface has")
-    mean = _find_mean_elevation(tin) if elevation is None else as_number("elevation", elevation)
+    mean = _find_mean_elevation(places) if elevation is None else as_number("elevation", elevation)
     above = 0.0 if undulation is None else as_number("undulation", undulation)
     metres = (mean + above) * (unit.metres or 1.0)
     as_number("elevation", metres, "a height", least=_LOWEST, most=_HIGHEST, unit="metres")
@@ -345,23 +349,29 @@ def _require_projected(crs: CRS | None) -> None:
         )
 
 
-def _find_crs(tin: TIN) -> CRS | None:
-    require_tin(tin)
-    return tin.crs
+def _find_crs(places: Any) -> CRS | None:
+    if not isinstance(places, Survey):
+        require_tin(places)
+    elif not len(places):
+        raise PointsError("The survey has no point, from which a mean elevation would be.")
+    crs: CRS | None = places.crs
+    return crs
 
 
-def _find_middle(tin: TIN | None) -> tuple[float, float]:
-    if tin is None:
+def _find_middle(places: Any) -> Any:
+    if places is None:
         raise OptionError("point", None, "an easting and a northing, where there is no surface")
-    return tin.bounds.center
+    return places.bounds.center
 
 
-def _find_mean_elevation(tin: TIN | None) -> float:
-    """Return the mean elevation by area."""
-    if tin is None:
+def _find_mean_elevation(places: Any) -> float:
+    """Return the mean elevation, of a surface by area."""
+    if places is None:
         raise OptionError("elevation", None, "a finite number, where there is no surface")
-    means = tin.points[tin.triangles, 2].mean(axis=1)
-    return float(np.average(means, weights=tin.triangle_areas))
+    if isinstance(places, Survey):
+        return float(places.points[:, 2].mean())
+    means = places.points[places.triangles, 2].mean(axis=1)
+    return float(np.average(means, weights=places.triangle_areas))
 
 
 # ---------------------------------------------------------------- what the earth is like

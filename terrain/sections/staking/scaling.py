@@ -22,7 +22,7 @@ def require_places(places: Any) -> Float64Array:
     """Return points as an array of two or three columns, or refuse them."""
     found = as_floats(places)
     if found is None or found.ndim != 2 or found.shape[1] not in (2, 3):
-        allowed = "an (n, 2) or (n, 3) array of coordinates, a TIN, Features or an Alignment"
+        allowed = "an (n, 2) or (n, 3) array, a TIN, a Survey, Features or an Alignment"
         raise OptionError("places", places, allowed)
     return found
 

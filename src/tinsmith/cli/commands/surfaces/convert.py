@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from ....base.sentences import counted
 from ...command import file_command
+from ...ground_coordinates import GROUND_COORDINATES, tell_factor
 from ...job import Job, surface_options
 from ...options import CONSOLE, READING, WRITING
 from ...output.facts import Facts
@@ -19,16 +20,18 @@ if TYPE_CHECKING:
 
 
 @file_command
-@surface_options(READING, WRITING, CONSOLE)
+@surface_options(READING, GROUND_COORDINATES, WRITING, CONSOLE)
 def convert(file: Path, job: Job) -> None:
     """Write what is in FILE in another format: a TIN as a TIN, points as points.
 
     A TIN can also be written as points or features (--kind), and points that are the cells of a
     grid, such as those of a DEM, as a raster. To build a TIN from points, use 'tinsmith build';
-    for a raster of another surface 'tinsmith raster'.
+    for a raster of another surface 'tinsmith raster'. With --to-ground coordinates are those on the
+    ground; --to-crs with the CRS of the grid brings them back, from files that keep their CRS.
 
     Example:
       tinsmith convert sample_data/site_survey.csv -o site.xyz
+      tinsmith convert sample_data/site_survey.csv --crs EPSG:32616 --to-ground -o on_ground.csv
     """
     from ....tin import Survey
     from ...output.summaries import note_assumed_unit, summarise_reading
@@ -41,7 +44,11 @@ def convert(file: Path, job: Job) -> None:
         "Raster",
         choose=lambda one: "Raster" if {*one.formats} == {"Raster"} else "any",
     )
+    job.ground_coordinates.require_fitting()
     found = job.read(file)
+    factor = job.ground_coordinates.find_factor(found)
+    if factor is not None:
+        found = factor.to_ground(found)
     made: Any = found
     if planned.holds("Raster") and isinstance(found, Survey):
         made = _make_raster(found, planned.outputs["Raster"][0].path)
@@ -56,6 +63,7 @@ def convert(file: Path, job: Job) -> None:
     )
     facts.add("Read", f"{text} from {name_file(file)}")
     facts.extend(summarise_reading(found))
+    tell_factor(facts, factor)
     if note := note_assumed_unit(found):
         facts.add("Elevation", note)
     paths = [split_output(path)[0] for path in job.outputs]
