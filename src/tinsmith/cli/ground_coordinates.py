@@ -13,7 +13,7 @@ from .parameters import number_option, under
 if TYPE_CHECKING:
     from ..terrain import CombinedFactor
     from ..tin import TIN, Survey
-    from .output.facts import Facts
+    from .output import Facts
 
 
 @dataclass(frozen=True)

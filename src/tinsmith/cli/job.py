@@ -37,8 +37,8 @@ if TYPE_CHECKING:
     from ..tiled.cloud import TiledPoints
     from ..tin import TIN, Survey
     from .options import Coding, Group
+    from .output import Facts
     from .output.console import Console
-    from .output.facts import Facts
     from .outputs import Products
     from .parameters import Decorator
 

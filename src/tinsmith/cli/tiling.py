@@ -13,7 +13,7 @@ import click
 from ..base.sentences import counted
 from .job import Job, surface_options
 from .options import CONSOLE, READING, TRIANGULATING, WRITING, Group
-from .output.facts import Facts
+from .output import Facts
 from .output.failures import Failure, note_written
 from .parameters import number_option, under
 from .paths import STANDARD

@@ -13,7 +13,7 @@ from ...axes import alignment_option, read_axis
 from ...command import command
 from ...job import Job, surface_options
 from ...options import CONSOLE, WRITING
-from ...output.facts import Facts
+from ...output import Facts
 from ...output.failures import Failure
 from ...parameters import crs_option, file_option, input_file, number_option, output_option
 from ...paths import Named

@@ -10,7 +10,7 @@ import click
 from ....base.sentences import counted, height
 from ...command import file_command
 from ...job import Job
-from ...output.facts import Facts, list_rows, name_unit, name_units
+from ...output import Facts, list_rows, name_unit, name_units
 from ...parameters import LibraryOption, number_option
 from ...paths import make_title
 from ...product_options import product_options

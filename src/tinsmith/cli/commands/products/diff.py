@@ -10,8 +10,7 @@ import click
 from ...command import command
 from ...error_options import error_options, take_errors
 from ...job import Job, surface_options
-from ...output.counts import mesh_counts
-from ...output.facts import Facts, name_units
+from ...output import Facts, mesh_counts, name_units
 from ...parameters import input_file, output_files
 from ...paths import make_title
 

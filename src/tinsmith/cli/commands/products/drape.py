@@ -8,8 +8,7 @@ from typing import Any
 from ....base.sentences import counted
 from ...command import command
 from ...job import Job, name_features
-from ...output.counts import mesh_counts
-from ...output.facts import Facts
+from ...output import Facts, mesh_counts
 from ...parameters import input_file, output_files
 from ...paths import LINES
 from ...product_options import product_options

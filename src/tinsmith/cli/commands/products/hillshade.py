@@ -8,7 +8,7 @@ from typing import Any
 
 from ...command import file_command
 from ...job import Job, surface_options
-from ...output.facts import Facts
+from ...output import Facts
 from ...product_options import product_options
 
 

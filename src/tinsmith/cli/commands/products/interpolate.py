@@ -12,8 +12,7 @@ from ....base.policies import Extrapolation, InterpolationMethod
 from ....base.sentences import counted
 from ...command import command
 from ...job import Job
-from ...output.counts import mesh_counts
-from ...output.facts import Facts
+from ...output import Facts, mesh_counts
 from ...output.failures import Failure
 from ...parameters import choice_option, crs_option, file_option, input_file, output_files
 from ...paths import Named

@@ -11,7 +11,7 @@ from ....base.sentences import counted
 from ...command import command
 from ...job import Job, name_features, surface_options
 from ...options import CONSOLE, READING, TRIANGULATING
-from ...output.facts import Facts
+from ...output import Facts
 from ...output.failures import note_written
 from ...parameters import file_option, input_file, number_option, output_option
 from ...paths import Named, make_title, require_separate

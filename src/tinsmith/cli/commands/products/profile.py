@@ -11,8 +11,7 @@ from ....base.sentences import counted
 from ...axes import axis_options, holds_alignments, read_axis
 from ...command import command
 from ...job import Job, name_features
-from ...output.counts import mesh_counts
-from ...output.facts import Facts
+from ...output import Facts, mesh_counts
 from ...parameters import LibraryOption, number_option, output_files, position_option
 from ...paths import INPUT, make_title
 from ...product_options import product_options

@@ -12,7 +12,7 @@ from ....base.policies import CellValue
 from ....base.sentences import coordinate, counted
 from ...command import file_command
 from ...job import Job
-from ...output.facts import Facts
+from ...output import Facts
 from ...parameters import choice_option, file_option
 from ...paths import Named
 from ...point_rasters import PointChoice, point_options

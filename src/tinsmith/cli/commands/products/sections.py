@@ -11,8 +11,7 @@ import click
 from ...axes import axis_options, holds_alignments, read_axis
 from ...command import command
 from ...job import Job, name_features, surface_options
-from ...output.counts import mesh_counts
-from ...output.facts import Facts, list_rows, name_units
+from ...output import Facts, list_rows, mesh_counts, name_units
 from ...parameters import output_option
 from ...paths import INPUT, make_title
 from ...product_options import product_options

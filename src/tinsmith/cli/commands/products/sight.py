@@ -9,7 +9,7 @@ import click
 
 from ...command import file_command
 from ...job import Job, name_features, surface_options
-from ...output.facts import describe_features, name_unit
+from ...output import describe_features, name_unit
 from ...parameters import file_option, number_option, position_option
 
 if TYPE_CHECKING:

@@ -11,8 +11,7 @@ from ....base.policies import SlopeUnit
 from ...command import file_command
 from ...job import Job, surface_options
 from ...options import CONSOLE, TRIANGULATING, WRITING, make_reading
-from ...output.counts import describe_counts
-from ...output.facts import Facts, list_rows, name_units
+from ...output import Facts, describe_counts, list_rows, name_units
 from ...parameters import choice_option, numbers_option
 from ...tiling import TILING, choose_tiles, compute_tiles, describe_points
 

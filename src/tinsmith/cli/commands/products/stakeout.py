@@ -13,8 +13,7 @@ from ...command import command
 from ...ground_coordinates import GROUND_COORDINATES, tell_factor
 from ...job import Job, name_features, surface_options
 from ...options import CONSOLE, TRIANGULATING, WRITING, make_reading
-from ...output.counts import mesh_counts
-from ...output.facts import Facts, list_rows, name_units
+from ...output import Facts, list_rows, mesh_counts, name_units
 from ...parameters import file_option, input_file, numbers_option, output_option
 from ...paths import Named
 from ...product_options import product_options

@@ -10,8 +10,7 @@ import click
 from ...command import command
 from ...error_options import error_options, name_flag, take_errors
 from ...job import Job, name_features
-from ...output.counts import mesh_counts
-from ...output.facts import Facts, list_rows, name_units
+from ...output import Facts, list_rows, mesh_counts, name_units
 from ...parameters import file_option, number_option, output_option
 from ...paths import INPUT, make_title
 from ...tiling import (

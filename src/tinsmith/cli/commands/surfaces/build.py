@@ -11,8 +11,7 @@ import click
 from ....base.sentences import counted
 from ...command import command
 from ...job import Job
-from ...output.counts import describe_counts
-from ...output.facts import Facts
+from ...output import Facts, describe_counts
 from ...output.failures import Failure
 from ...parameters import input_files, number_option, output_files, report_option
 from ...paths import describe_inputs, name_files

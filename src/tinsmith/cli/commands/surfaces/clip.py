@@ -8,8 +8,7 @@ import click
 
 from ...command import file_command
 from ...job import Job, name_features, surface_options
-from ...output.counts import mesh_counts
-from ...output.facts import Facts
+from ...output import Facts, mesh_counts
 from ...parameters import file_option
 
 

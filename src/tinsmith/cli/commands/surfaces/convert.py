@@ -10,7 +10,7 @@ from ...command import file_command
 from ...ground_coordinates import GROUND_COORDINATES, tell_factor
 from ...job import Job, surface_options
 from ...options import CONSOLE, READING, WRITING
-from ...output.facts import Facts
+from ...output import Facts
 from ...output.failures import Failure
 from ...paths import name_file, split_output
 

@@ -13,8 +13,7 @@ from ....base.sentences import counted
 from ...command import command
 from ...edit_tables import read_edit_table
 from ...job import Job, open_standard_input, surface_options
-from ...output.counts import mesh_counts
-from ...output.facts import Facts
+from ...output import Facts, mesh_counts
 from ...output.failures import Failure
 from ...parameters import input_file, output_files, report_option
 from ...paths import INPUT, STANDARD, Named, name_file

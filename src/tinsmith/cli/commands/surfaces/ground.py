@@ -10,7 +10,7 @@ import click
 from ....base.sentences import counted
 from ...command import command
 from ...job import Job
-from ...output.facts import Facts
+from ...output import Facts
 from ...parameters import input_files, number_option, output_files
 from ...paths import describe_inputs, name_file, name_files
 from ...product_options import product_options

@@ -12,7 +12,7 @@ from ....base.sentences import coordinate, counted
 from ...command import command
 from ...job import Job, surface_options
 from ...options import CODING, CONSOLE, READING
-from ...output.facts import Facts
+from ...output import Facts
 from ...output.failures import Failure
 from ...parameters import input_files
 from ...paths import OUTPUT, describe_inputs, make_title, name_file, name_files

@@ -9,8 +9,7 @@ import click
 
 from ...command import command
 from ...job import Job, surface_options
-from ...output.counts import describe_counts
-from ...output.facts import Facts, list_rows, name_units
+from ...output import Facts, describe_counts, list_rows, name_units
 from ...parameters import input_files, output_option
 from ...paths import describe_inputs, make_title, name_files
 

@@ -8,8 +8,7 @@ import click
 
 from ...command import command
 from ...job import Job, surface_options
-from ...output.counts import mesh_counts
-from ...output.facts import Facts
+from ...output import Facts, mesh_counts
 from ...parameters import input_files, number_option, output_files
 
 

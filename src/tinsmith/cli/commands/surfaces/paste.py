@@ -6,8 +6,7 @@ from pathlib import Path
 
 from ...command import command
 from ...job import Job, surface_options
-from ...output.counts import mesh_counts
-from ...output.facts import Facts
+from ...output import Facts, mesh_counts
 from ...parameters import input_file, output_files
 
 

@@ -8,8 +8,7 @@ from typing import Any
 from ....base.sentences import counted
 from ...command import file_command, name_flags
 from ...job import Job, surface_options
-from ...output.counts import mesh_counts
-from ...output.facts import Facts
+from ...output import Facts, mesh_counts
 from ...output.failures import Failure, refuse_option
 from ...parameters import number_option
 from ...product_options import product_options

@@ -10,8 +10,7 @@ import click
 from ....base.sentences import coordinate, counted
 from ...command import file_command
 from ...job import Job
-from ...output.counts import mesh_counts
-from ...output.facts import Facts
+from ...output import Facts, mesh_counts
 from ...output.failures import Failure, note_written
 from ...parameters import file_option
 from ...paths import INPUT, Named

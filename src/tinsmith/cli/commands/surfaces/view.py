@@ -11,7 +11,7 @@ import click
 from ...command import command
 from ...job import Job, surface_options
 from ...options import CONSOLE, READING, TRIANGULATING
-from ...output.facts import Facts
+from ...output import Facts
 from ...output.failures import note_written, report_warning
 from ...parameters import file_option, input_files, parsed, picture_option
 from ...paths import INPUT, Named, describe_inputs, make_title
