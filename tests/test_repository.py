@@ -199,7 +199,7 @@ LARGER_FOLDERS = {
     "io/vector": 22,
     "qgis/tinsmith/icons": 25,
 }
-"""Those with a file for each format or algorithm, and those to be divided, which may only shrink."""
+"""Those with a file for each format or algorithm, and those to be divided: may only shrink."""
 
 
 def test_folders_can_be_taken_in_at_a_glance():
