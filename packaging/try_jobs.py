@@ -20,7 +20,10 @@ JOBS = (
     "build {survey} --crs EPSG:32616 -o site.ply -o site.geojson",
     "view site.ply -o site.png",
     "view site.ply -o site.html",
-    "contours site.ply --interval 0.5 -o contours.geojson",
+    "contours site.ply --interval 0.5 -o contours.geojson -o contours.gpkg",
+    "convert site.ply -o site.dxf -o site.xml",
+    "volume site.ply --base 320 -o volume.csv -o volume.png",
+    "plan site.ply -o plan.pdf",
     "raster site.ply --spacing 5 -o site.tif",
     "check site.ply",
 )
@@ -30,6 +33,11 @@ BEGINNINGS = {
     "site.png": b"\x89PNG",
     "site.html": b"<!doctype html>",
     "contours.geojson": b"{",
+    "contours.gpkg": b"SQLite format 3",
+    "site.dxf": b"  0\nSECTION",
+    "site.xml": b"<?xml",
+    "volume.png": b"\x89PNG",
+    "plan.pdf": b"%PDF",
     "site.tif": b"II*\0",
 }
 

@@ -32,7 +32,6 @@ FORMATS = (
         "points but number and description; columns of features; notes and report. R12 has no "
         "CRS.",
         loses=("elevation unit", "order", "attributes", "notes", "report"),
-        extra="cad",
         sniff=signatures.is_dxf,
     ),
 )

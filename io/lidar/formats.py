@@ -36,7 +36,6 @@ FORMATS = (
             *("attributes", "notes", "report"),
         ),
         holds_classes=True,
-        extra="lidar",
         sniff=is_lidar,
         sniff_folder=is_lidar_folder,
         find_sources=_list_named,

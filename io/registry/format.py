@@ -177,8 +177,8 @@ class Format:
         Examples
         --------
         >>> import tinsmith as ts
-        >>> ts.find_format("dxf").needs
-        'tinsmith[cad]'
+        >>> ts.find_format("gmsh").needs
+        'tinsmith[mesh]'
         """
         return f"{_OWN}[{self.extra}]" if self.extra else ""
 

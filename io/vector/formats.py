@@ -76,14 +76,12 @@ FORMATS = (
         writes=("Features", "Survey"),
         losses="Of a survey its lines.",
         loses=("survey lines",),
-        extra="vector",
         sniff=is_geopackage,
         side_files={"": ("*-wal", "*-shm", "*-journal")},
     ),
     _make(
         *("flatgeobuf", "FlatGeobuf", ".fgb"),
         writer="ogr:write_flatgeobuf",
-        extra="vector",
         sniff=is_flatgeobuf,
     ),
     _make(
@@ -93,7 +91,6 @@ FORMATS = (
         losses="Names beyond 10 bytes, texts beyond 254, units and notes. As a MultiPatch (on "
         "request) slope, aspect and area too. " + _LOSSES,
         loses=("elevation unit", *_LOSES),
-        extra="vector",
         sniff=is_shapefile,
         side_files={"": _OF_SHAPEFILES},
     ),
@@ -110,7 +107,6 @@ FORMATS = (
         "vector",
         "Other vector layers that GDAL reads: KML, GML, GPX, MapInfo, geodatabases ...",
         *(".kml", ".gml", ".gpx", ".tab", ".mif", ".gmt", ".jml", ".gdb"),
-        extra="vector",
         sniff=is_vector_text,
         sniff_folder=is_geodatabase,
         side_files=_OF_OTHERS,

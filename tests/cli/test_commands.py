@@ -483,7 +483,7 @@ def test_formats_tells_what_is_installed(monkeypatch, is_there):
 def test_formats_names_the_extras():
     shown = " ".join(run("formats").stdout.split())
     assert "tinsmith[mesh]" in shown
-    assert "tinsmith[vector]" in shown
+    assert "tinsmith[interop]" in shown
 
 
 def test_mean_slope_is_weighted_by_area(tmp_path):

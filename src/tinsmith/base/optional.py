@@ -9,20 +9,18 @@ from typing import Any
 
 from .errors import MissingExtraError
 
-_INCLUDED = ("numpy", "pyproj", "pyvista", "rasterio", "shapely")
+_INCLUDED = (
+    *("ezdxf", "laspy", "lazrs", "matplotlib", "numpy", "pandas", "pyogrio", "pyproj", "pyvista"),
+    *("rasterio", "shapely"),
+)
 """What every ordinary installation has; one without dependencies may lack what it does not use."""
 
 _EXTRA_OF = {
     "distributed": "dask",
-    "ezdxf": "cad",
     "geopandas": "interop",
-    "laspy": "lidar",
-    "matplotlib": "plot",
     "meshio": "mesh",
     "netCDF4": "mesh",
-    "pandas": "interop",
     "pyarrow": "interop",
-    "pyogrio": "vector",
     "trimesh": "interop",
     "xarray": "interop",
 }

@@ -334,10 +334,10 @@ def test_files_that_are_none(tmp_path):
     refused("no vector file that GDAL knows", read_lines, tmp_path / "a.gpkg")
 
 
-def test_without_pyogrio_the_extra_is_named(tmp_path, monkeypatch):
+def test_without_pyogrio_what_brings_it_is_named(tmp_path, monkeypatch):
     monkeypatch.setitem(sys.modules, "pyogrio", None)
     text = refused("pyogrio", read_lines, tmp_path / "a.gpkg", error=ts.MissingExtraError)
-    assert "tinsmith[vector]" in text
+    assert "run pip install pyogrio" in text
 
 
 # ------------------------------------------------------------------------- a survey's
