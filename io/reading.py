@@ -24,6 +24,7 @@ from ..base.progress import Progress
 from ..base.sentences import FILE, counted, inflect, printable
 from ..tin import TIN, Survey
 from .isolated.archives import unpack
+from .isolated.file_objects import as_bytes, is_file_object, name_stream
 from .isolated.spooling import (
     describe_system_error,
     open_ordinary_file,
@@ -75,7 +76,7 @@ def ask(
 
 @overload
 def read(
-    path: str | os.PathLike[str],
+    path: str | os.PathLike[str] | IO[Any],
     *,
     format: str | None = None,
     crs: CrsLike | None = None,
@@ -102,7 +103,7 @@ def read(
 
 
 def read(
-    path: str | os.PathLike[str] | Sequence[str | os.PathLike[str]],
+    path: str | os.PathLike[str] | IO[Any] | Sequence[str | os.PathLike[str]],
     *,
     format: str | None = None,  # noqa: A002 - the word that users of the package know
     crs: CrsLike | None = None,
@@ -116,10 +117,11 @@ def read(
 
     Parameters
     ----------
-    path : path-like or sequence of path-like
-        A file, or a folder: a format of its own, tiles of lidar, or files of points of one format.
-        Several files, or those of a folder, are one survey, whose attribute ``source_file`` says
-        where each point is from. What is compressed (``.gz``, ``.zip``) is unpacked, if one set of
+    path : path-like, file object, or sequence of path-like
+        A file, a file object of bytes or text that holds one, or a folder: a format of its own,
+        tiles of lidar, or files of points of one format. Several files, or those of a folder, are
+        one survey, whose attribute ``source_file`` says where each point is from. What is
+        compressed (``.gz``, ``.zip``) is unpacked, if one set of
         data is in it.
     format : str, optional
         Name of a format, to choose it whatever the file looks like.
@@ -190,7 +192,7 @@ def read(
 
 
 def read_with_fallbacks(
-    path: str | os.PathLike[str] | Sequence[str | os.PathLike[str]],
+    path: str | os.PathLike[str] | IO[Any] | Sequence[str | os.PathLike[str]],
     fallbacks: Mapping[str, Any],
     *,
     remote: bool = False,
@@ -202,7 +204,7 @@ def read_with_fallbacks(
 
     Parameters
     ----------
-    path : path-like or sequence of path-like
+    path : path-like, file object, or sequence of path-like
     fallbacks : mapping of str to object
         Options of readers; one that the chosen reader does not have is left out.
     **how
@@ -210,6 +212,12 @@ def read_with_fallbacks(
     """
     remote = as_flag("remote", remote)
     done = Progress(progress)
+    if is_file_object(path):
+        known = lookup.find_format(how["format"]).suffixes if how.get("format") is not None else ()
+        name = name_stream(path, known)
+        found = read_stream(as_bytes(path), name, fallbacks, check_crs=check_crs, **how)
+        done.end()
+        return found
     asked = ask(fallbacks, **how)._replace(progress=done.stage(0.0, 1.0))
     places = path if isinstance(path, list | tuple) else [cast("str | os.PathLike[str]", path)]
     with ExitStack() as copies:
@@ -266,13 +274,13 @@ def _read_several(paths: Sequence[Path], asked: Asked) -> Survey | TIN:
 
 
 def read_points(
-    path: str | os.PathLike[str] | Sequence[str | os.PathLike[str]], **options: Any
+    path: str | os.PathLike[str] | IO[Any] | Sequence[str | os.PathLike[str]], **options: Any
 ) -> Survey:
     """Read elevation points: :func:`read` for programs that need to know what they get.
 
     Parameters
     ----------
-    path : path-like or sequence of path-like
+    path : path-like, file object, or sequence of path-like
     **options
         As of :func:`read`.
 
@@ -298,15 +306,15 @@ def read_points(
     found = read(path, **options)
     if isinstance(found, Survey):
         return found
-    raise ReadError(f"'{path}' holds a TIN, not points alone: read_tin reads it.")
+    raise ReadError(f"'{_name(path)}' holds a TIN, not points alone: read_tin reads it.")
 
 
-def read_tin(path: str | os.PathLike[str], **options: Any) -> TIN:
+def read_tin(path: str | os.PathLike[str] | IO[Any], **options: Any) -> TIN:
     """Read a TIN: :func:`read` for programs that need to know what they get.
 
     Parameters
     ----------
-    path : path-like
+    path : path-like or file object
     **options
         As of :func:`read`.
 
@@ -332,7 +340,11 @@ def read_tin(path: str | os.PathLike[str], **options: Any) -> TIN:
     found = read(path, **options)
     if isinstance(found, TIN):
         return found
-    raise ReadError(f"'{path}' holds points alone, no TIN: triangulate makes one of them.")
+    raise ReadError(f"'{_name(path)}' holds points alone, no TIN: triangulate makes one of them.")
+
+
+def _name(path: Any) -> str:
+    return name_stream(path) if is_file_object(path) else str(path)
 
 
 def join_files(found: Sequence[Survey | TIN], paths: Sequence[Path]) -> Survey:

@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import IO, TYPE_CHECKING, Any, TypeVar, overload
 
 from ..base.atomic import as_path
-from ..base.errors import FormatError, TinsmithError, WriteError
-from ..base.notes import naming_file
+from ..base.errors import FormatError, OptionError, TinsmithError, WriteError
+from ..base.notes import naming_copy, naming_file
 from ..base.plug_ins import describe_failure
 from ..base.products import product
 from ..base.progress import Progress
 from ..base.results import Features, Raster, Table
 from ..terrain import Alignment
 from ..tin import Surface, Survey
+from .isolated.file_objects import is_file_object, name_stream, writing_into
 from .registry.format import require_options, takes_progress
 from .registry.lookup import find_writer
 from .registry.losses import warn_of_lost_lines
@@ -23,6 +24,8 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from .registry.format import Format
+
+    Stream = TypeVar("Stream", bound=IO[Any])
 
 _KINDS = {
     "TIN": Surface,
@@ -34,23 +37,43 @@ _KINDS = {
 }
 
 
-@product
+@overload
 def write(
     obj: object,
     path: str | os.PathLike[str],
     *,
+    format: str | None = None,
+    progress: Callable[[float], None] | None = None,
+    **options: Any,
+) -> Path: ...
+@overload
+def write(
+    obj: object,
+    path: Stream,
+    *,
+    format: str,
+    progress: Callable[[float], None] | None = None,
+    **options: Any,
+) -> Stream: ...
+@product
+def write(
+    obj: object,
+    path: Any,
+    *,
     format: str | None = None,  # noqa: A002 - as in read
     progress: Callable[[float], None] | None = None,
     **options: Any,
-) -> Path:
+) -> Any:
     """Write a TIN, a Survey or a product; the writer is chosen by what it is and the suffix.
 
     Parameters
     ----------
     obj : TIN, Survey, Features, Raster, Table or Alignment
-    path : path-like
+    path : path-like or file object
+        Where to write; an object of bytes, or of text for formats that are, gets the whole file at
+        its place, which must be one.
     format : str, optional
-        Name of a format, to choose it whatever the suffix.
+        Name of a format, to choose it whatever the suffix; a file object needs it.
     progress : callable, optional
         Called with the fraction done, ascending to 1.0, which is told once the file is whole and in
         its place; before that, what it raises ends the call, and there is no new file.
@@ -59,8 +82,8 @@ def write(
 
     Returns
     -------
-    Path
-        The file written.
+    Path or file object
+        The file written, or the object given.
 
     Raises
     ------
@@ -88,6 +111,8 @@ def write(
     ...     ts.write(ts.contours(tin, interval=1.0), Path(folder, "contours.xml")).name
     'contours.xml'
     """
+    if is_file_object(path):
+        return _write_into(obj, path, format, progress=progress, **options)
     file = as_path(path)
     chosen = find_writer(file, format, (find_kind(obj, file),))
     writer = chosen.load("write")
@@ -101,6 +126,18 @@ def write(
             warn_of_lost_lines(obj, chosen)
     done.end()
     return file
+
+
+def _write_into(obj: object, stream: Any, name: str | None, **how: Any) -> Any:
+    """Write a file into a file object, which it returns."""
+    if name is None:
+        allowed = "the name of a format, such as 'ply', where a file object is written"
+        raise OptionError("format", name, allowed)
+    place = Path(name_stream(stream))
+    chosen = find_writer(place, name, (find_kind(obj, place),))
+    with writing_into(stream, chosen) as path, naming_copy(path, place):
+        write(obj, path, format=chosen.name, **how)
+    return stream
 
 
 def _call_writer(
