@@ -85,11 +85,12 @@ def _parse_text(path: Path) -> ET.Element:
     from xml.etree import ElementTree as ET
 
     try:
-        if path.stat().st_size > LARGEST_TEXT:
-            raise _describe_refused_mosaic(f"is larger than {LARGEST_TEXT:,} bytes")
-        content = path.read_bytes()
+        size = path.stat().st_size
+        content = b"" if size > LARGEST_TEXT else path.read_bytes()
     except OSError as error:
         raise ReadError(f"Cannot read {FILE}: {error.strerror or error}.") from error
+    if size > LARGEST_TEXT:
+        raise _describe_refused_mosaic(f"is larger than {LARGEST_TEXT:,} bytes")
     if b"<!DOCTYPE" in content or b"<!ENTITY" in content:
         raise _describe_refused_mosaic("declares entities")
     try:

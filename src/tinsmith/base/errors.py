@@ -184,7 +184,7 @@ class CheckError(TinsmithError, ValueError):
         self.problems = tuple(problems)
 
 
-class ReadError(TinsmithError, ValueError):
+class ReadError(TinsmithError, OSError, ValueError):
     """A file that cannot be read, or whose content is not what it should be.
 
     Attributes
