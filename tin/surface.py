@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, Never, Self, cast, overload
 import numpy as np
 
 from ..base.crs import CRS, Unit, require_lengths, require_one_unit, scale_elevations, shorten_crs
+from ..base.elsewhere import raise_missing
 from ..base.errors import choice
 from ..base.lazy import call_method, make_html_repr
 from ..base.notes import join_notes
@@ -738,6 +739,11 @@ class Surface:
 
     def _repr_html_(self) -> str:
         return make_html_repr(self)
+
+    if not TYPE_CHECKING:  # which would take any name for an attribute
+
+        def __getattr__(self, name: str) -> Any:
+            raise_missing(self, name)
 
     # ---------------------------------------------------------------- as a value
 
