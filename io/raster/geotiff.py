@@ -13,11 +13,12 @@ import numpy as np
 
 from ...base import optional
 from ...base.errors import WriteError, choice
-from ...base.policies import OverviewMethod, RasterCompression
+from ...base.policies import CellType, OverviewMethod, RasterCompression
 from ...base.results.columns import UNKNOWN_UNIT, unit_text
 from ...base.sentences import FILE
 from ..registry.side_files import replacing_data_set
 from ..reprojection.quality import require_kept
+from .cell_types import store_as
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -44,6 +45,8 @@ def write(
     *,
     overviews: OverviewMethod | None = None,
     compression: RasterCompression = "deflate",
+    dtype: CellType | None = None,
+    nodata: float | None = None,
     progress: Tell | None = None,
 ) -> None:
     """Write a raster as a tiled GeoTIFF, compressed without loss.
@@ -55,13 +58,19 @@ def write(
         cell for whole numbers and if a band is an aspect, whose mean is none.
     compression : {"deflate", "none"}, optional
         Without loss, as every GIS reads it, by all cores; or none, for the fastest file.
+    dtype : {"float32", "float64", "int8", "int16", "int32", "uint8", "uint16", "uint32"}, optional
+        Type of the cells; whole numbers are rounded to the nearest. Default that of the raster.
+    nodata : float, optional
+        Value of cells without data, which no other cell may have. Default that of the raster, NaN
+        if nothing else was chosen.
 
     Raises
     ------
     OptionError
-        If there are no such overviews, or no such compression.
+        If there are no such overviews, compression or type, or it cannot hold the value of cells
+        without data.
     WriteError
-        Also if the value of cells without data is none that the bands can hold.
+        Also if a value is none that the cells can hold, or that of cells without data.
 
     Notes
     -----
@@ -71,6 +80,7 @@ def write(
     grow with the raster; while some are computed, others are compressed. The bytes are the same for
     any number of cores.
     """
+    raster = store_as(raster, dtype, nodata)
     resampling = _choose_resampling(raster, overviews)
     choice("compression", compression, RasterCompression)
     with replacing_data_set(path, "geotiff") as new, _translate_faults():
@@ -101,6 +111,8 @@ def write_cog(
     path: Path,
     *,
     overviews: OverviewMethod | None = None,
+    dtype: CellType | None = None,
+    nodata: float | None = None,
     progress: Tell | None = None,
 ) -> None:
     """Write a raster as a cloud optimized GeoTIFF; errors as :func:`write`.
@@ -109,11 +121,17 @@ def write_cog(
     ----------
     overviews : {"average", "nearest", "none"}, optional
         How the cells of smaller copies for display are found, as :func:`write` chooses it.
+    dtype : {"float32", "float64", "int8", "int16", "int32", "uint8", "uint16", "uint32"}, optional
+        Type of the cells; whole numbers are rounded to the nearest. Default that of the raster.
+    nodata : float, optional
+        Value of cells without data, which no other cell may have. Default that of the raster, NaN
+        if nothing else was chosen.
 
     Notes
     -----
     The driver copies a whole raster: a GeoTIFF is written beside it first, and removed.
     """
+    raster = store_as(raster, dtype, nodata)
     resampling = _choose_resampling(raster, overviews)
     with replacing_data_set(path, "cog") as new, _translate_faults():
         plain = new.with_name(f"plain-{new.name}")

@@ -108,6 +108,11 @@ SurfacePart: TypeAlias = Literal["triangle", "vertex"]
 OverviewMethod: TypeAlias = Literal["average", "nearest", "none"]
 """How the cells of a raster's smaller copies are found."""
 
+CellType: TypeAlias = Literal[
+    "float32", "float64", "int8", "int16", "int32", "uint8", "uint16", "uint32"
+]
+"""Types of the values of cells, as NumPy and GDAL call them."""
+
 RasterCompression: TypeAlias = Literal["deflate", "none"]
 """How the cells of a GeoTIFF are packed, without loss."""
 
