@@ -8,9 +8,8 @@ from typing import TYPE_CHECKING, Any, Never, Self, cast, overload
 import numpy as np
 
 from ..base.crs import CRS, Unit, require_lengths, require_one_unit, scale_elevations, shorten_crs
-from ..base.elsewhere import raise_missing
 from ..base.errors import choice
-from ..base.lazy import call_method, make_html_repr
+from ..base.lazy import call_method, make_html_repr, raise_missing
 from ..base.notes import join_notes
 from ..base.policies import Extrapolation, FeatureKind, InterpolationMethod
 from ..base.ranges import describe_span, require_degrees

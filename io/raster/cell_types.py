@@ -46,7 +46,7 @@ def store_as(raster: Raster, dtype: CellType | None, nodata: float | None) -> Ra
     if dtype is not None:
         choice("dtype", dtype, CellType)
     chosen = raster.nodata if nodata is None else _as_nodata(nodata)
-    bands = {}
+    bands: dict[str, Any] = {}
     for name, band in raster.bands.items():
         kind = np.dtype(band.dtype if dtype is None else dtype)
         _require_nodata(chosen, kind, raster, band)

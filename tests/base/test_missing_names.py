@@ -6,7 +6,7 @@ import pickle
 import pytest
 
 import tinsmith as ts
-from tinsmith.base.elsewhere import _CALLED
+from tinsmith.base.lazy import _CALLED
 
 TIN = ts.triangulate([[0, 0, 5], [4, 0, 6], [0, 3, 8]])
 
