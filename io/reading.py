@@ -143,7 +143,14 @@ def read(
         Called with the fraction done, ascending to 1.0: within files of lidar, rasters and
         delimited text, else file by file. What it raises ends the call.
     **options
-        Options of the reader, see :meth:`Format.options`.
+        Options of the reader, which ``tinsmith formats NAME`` explains. Of text: ``columns``,
+        ``delimiter``, ``decimal``, ``comment``, ``encoding``, ``skip_bad``, ``source_crs``,
+        ``nodata``; of instruments ``code_blocks``, ``oriented``, ``refraction``; of rasters
+        ``band``, ``cells``, ``stride``, ``most_cells``, ``fill``, ``nodata``, ``window``; of lidar
+        ``classes``, ``returns``, ``resolution``, ``every``, ``withheld``, ``attributes``,
+        ``window``; of vector layers ``layer``, ``z_field``, ``where``, ``lines_as``, ``nodata``; of
+        LandXML and DXF ``unit``, ``content``, ``surface``, ``layer``, ``texts``, ``tolerance``; of
+        meshes ``faces``, ``surface``, ``variable``, ``join``, ``tile``.
 
     Returns
     -------

@@ -78,7 +78,12 @@ def write(
         Called with the fraction done, ascending to 1.0, which is told once the file is whole and in
         its place; before that, what it raises ends the call, and there is no new file.
     **options
-        Options of the writer, see :meth:`Format.options`.
+        Options of the writer, which ``tinsmith formats NAME`` explains. Of text and tables:
+        ``columns``, ``delimiter``, ``header``, ``decimals``; of rasters ``dtype``, ``nodata``,
+        ``overviews``, ``compression``, ``band``; of vector files ``kind``, ``layer``, ``append``,
+        ``overwrite``, ``compact``, ``projected``, ``multipatch``; of LandXML and DXF ``name``,
+        ``unit``, ``version``, ``labels``; of meshes ``ortho``, ``exaggeration``, ``scale``,
+        ``solid``, ``thickness``, ``size``, ``precision``, ``max_level``, ``gzipped``.
 
     Returns
     -------

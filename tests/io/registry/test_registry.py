@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import inspect
 import os
+import re
 import stat
 from pathlib import Path
 from types import SimpleNamespace
@@ -318,3 +320,13 @@ def test_file_beside_has_the_same_suffix(tmp_path):
 def test_a_name_that_is_no_text_is_no_format(name):
     with pytest.raises(ts.FormatError, match=r"^Unknown format .*: one of "):
         ts.find_format(name)
+
+
+@pytest.mark.parametrize(("action", "function"), [("read", ts.read), ("write", ts.write)])
+def test_help_names_the_options_of_every_format(action, function):
+    text = inspect.getdoc(function)
+    listed = text.split("**options\n", 1)[1].split("\n\n", 1)[0]
+    named = set(re.findall(r"``(\w+)``", listed))
+    able = [one for one in ts.known_formats() if getattr(one, action) is not None]
+    built_in = [one for one in able if one.is_built_in]
+    assert named == {option for one in built_in for option in one.options(action)}
