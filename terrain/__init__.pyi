@@ -49,7 +49,9 @@ from .isolines import contour_bands as contour_bands
 from .isolines import contour_labels as contour_labels
 from .isolines import contours as contours
 from .plans import Plan as Plan
+from .plans import SectionSheets as SectionSheets
 from .plans import plan as plan
+from .plans import section_sheets as section_sheets
 from .relief.classes import aspect_classes as aspect_classes
 from .relief.classes import slope_classes as slope_classes
 from .relief.curvatures import curvature as curvature

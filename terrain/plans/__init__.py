@@ -1,5 +1,15 @@
-"""Plan sheets: a surface on paper, true to scale, as PDF, SVG and PNG."""
+"""Plan sheets and section sheets: surfaces on paper, true to scale."""
 
+from .files import PLAN_SUFFIXES, REPORT_SUFFIXES, SHEET_SUFFIXES
 from .production import Plan, plan
+from .sheets import SectionSheets, section_sheets
 
-__all__ = ["Plan", "plan"]
+__all__ = [
+    "PLAN_SUFFIXES",
+    "REPORT_SUFFIXES",
+    "SHEET_SUFFIXES",
+    "Plan",
+    "SectionSheets",
+    "plan",
+    "section_sheets",
+]

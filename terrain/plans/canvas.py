@@ -5,7 +5,7 @@ from __future__ import annotations
 import warnings
 from collections import Counter
 from contextlib import contextmanager
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 
 import numpy as np
 
@@ -40,6 +40,10 @@ METADATA: dict[str, dict[str, None]] = {
 }
 
 
+HATCH_SPACING = 2.0
+"""Millimetres between lines of a hatch."""
+
+
 class Pen(NamedTuple):
     """How a line is drawn: its colour, and its width and dashes in millimetres."""
 
@@ -60,6 +64,33 @@ def drawing_rules() -> Iterator[None]:
         matplotlib.rcParams.update(_RULES)
         warnings.filterwarnings("ignore", message="Glyph .* missing from")
         yield
+
+
+class Drawable(Protocol):
+    """What a sheet is drawn on, in millimetres from its lower left corner."""
+
+    def draw_paths(self, parts: Sequence[Float64Array], pen: Pen, name: str) -> None:
+        """Draw polylines; ``name`` is what they are."""
+
+    def fill(self, rings: Sequence[Float64Array], color: str, name: str) -> None:
+        """Fill the area within rings, each closed."""
+
+    def hatch(self, ring: Float64Array, pen: Pen, angle: float, name: str) -> None:
+        """Draw parallel lines within a ring, 2 mm apart, at an angle in degrees."""
+
+    def write(
+        self,
+        place: tuple[float, float],
+        text: str,
+        *,
+        size: float,
+        color: str = INK,
+        rotation: float = 0.0,
+        across: str = "left",
+        up: str = "baseline",
+        name: str | None = None,
+    ) -> None:
+        """Write a text on one line."""
 
 
 class Canvas:
@@ -108,6 +139,10 @@ class Canvas:
         drawn.set_gid(self._choose_name(name))
         self._axes.add_patch(drawn)
 
+    def hatch(self, ring: Float64Array, pen: Pen, angle: float, name: str) -> None:
+        """Draw parallel lines within a ring, at an angle in degrees."""
+        self.draw_paths(hatch_ring(ring, angle), pen, name)
+
     def write(
         self,
         place: tuple[float, float],
@@ -149,3 +184,20 @@ class Canvas:
         """Return the next place in the order of drawing: later things lie on top."""
         self._order += 1
         return float(self._order)
+
+
+def hatch_ring(ring: Float64Array, angle: float) -> list[Float64Array]:
+    """Return the parts of parallel lines within a ring."""
+    shapely = optional.load("shapely")
+    area = shapely.make_valid(shapely.Polygon(ring))
+    across = np.array([-np.sin(np.radians(angle)), np.cos(np.radians(angle))])
+    along = np.array([across[1], -across[0]])
+    far, side = ring @ along, ring @ across
+    numbers = np.arange(
+        np.ceil(side.min() / HATCH_SPACING), np.floor(side.max() / HATCH_SPACING) + 1
+    )
+    middles = numbers[:, None] * HATCH_SPACING * across
+    lines = np.stack([middles + far.min() * along, middles + far.max() * along], axis=1)
+    found = shapely.get_parts(shapely.intersection(shapely.linestrings(lines), area))
+    is_line = shapely.get_type_id(found) == shapely.GeometryType.LINESTRING
+    return [shapely.get_coordinates(one) for one in found[is_line & (shapely.length(found) > 0)]]

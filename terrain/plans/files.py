@@ -14,21 +14,29 @@ from .papers import MM_PER_INCH
 
 if TYPE_CHECKING:
     import os
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Sequence
     from pathlib import Path
 
     from .canvas import Canvas
 
 PLAN_SUFFIXES = (".pdf", ".svg", ".png")
-"""File name endings of what can be written."""
+SHEET_SUFFIXES = (".pdf", ".svg", ".dxf")
+REPORT_SUFFIXES = (".pdf",)
+"""File name endings of what can be written: of plans, of sheets of sections, and of reports."""
+_IN_ONE = (".pdf", ".dxf")
 
 _DPI = (50, 1200)
 _MOST_PIXELS = 150_000_000
 """A0 at 260 dpi; 600 MB while it is drawn."""
 
 
-def list_files(path: str | os.PathLike[str], count: int) -> list[Path]:
-    """Return the names of the files of so many sheets.
+def list_files(
+    path: str | os.PathLike[str],
+    count: int,
+    suffixes: Sequence[str] = PLAN_SUFFIXES,
+    what: str = "a plan",
+) -> list[Path]:
+    """Return the names of the files of so many sheets, whose endings are among ``suffixes``.
 
     Raises OptionError if the path is none. Raises RenderError if its suffix is another.
 
@@ -39,11 +47,11 @@ def list_files(path: str | os.PathLike[str], count: int) -> list[Path]:
     """
     file = as_path(path, "path")
     suffix = file.suffix.lower()
-    if suffix not in PLAN_SUFFIXES:
+    if suffix not in suffixes:
         raise RenderError(
-            f"Cannot write a plan to '{file}': its name must end in {', '.join(PLAN_SUFFIXES)}."
+            f"Cannot write {what} to '{file}': its name must end in {', '.join(suffixes)}."
         )
-    if suffix == ".pdf" or count == 1:
+    if suffix in _IN_ONE or count == 1:
         return [file]
     digits = len(str(count))
     return [
@@ -53,15 +61,13 @@ def list_files(path: str | os.PathLike[str], count: int) -> list[Path]:
 
 
 def write_sheets(
-    path: str | os.PathLike[str],
+    files: list[Path],
     canvases: Iterator[Canvas],
-    count: int,
     size: tuple[float, float],
     dpi: int,
     title: str,
 ) -> list[Path]:
-    """Write sheets; each is drawn when it is written."""
-    files = list_files(path, count)
+    """Write sheets to files of :func:`list_files`; each is drawn when it is written."""
     kind = files[0].suffix.lower().lstrip(".")
     _require_pixels(dpi, size, kind)
     for file in files:

@@ -18,7 +18,7 @@ from ...base.policies import ContourLabeling, GridStyle, PointMarking, SheetLayo
 from ...base.products import product
 from ...base.sentences import counted
 from ...tin import Bounds, Survey
-from ..drawing import UNTITLED, draw_north_up, parse_text, parse_title
+from ..drawing import UNTITLED, draw_north_up
 from ..surface import as_features, as_segments
 from .arrangement import Ground, choose_single, cut_rows, cut_strip_windows
 from .canvas import Canvas
@@ -26,11 +26,11 @@ from .contents import describe_count, gather_contents
 from .files import list_files, write_sheets
 from .footprint import find_footprint
 from .index_sheet import draw_index
-from .lettering import PURPOSE, clean_text, find_missing_letters
+from .lettering import PURPOSE
 from .mapping import Map
 from .papers import Paper, arrange_sheet
-from .scales import Scale, find_ground_unit, measure_scale_factor
-from .title_block import Caption, draw_title_block
+from .scales import Scale, describe_factor, find_ground_unit, measure_scale_factor
+from .title_block import Caption, describe_missing_letters, draw_title_block, read_words
 
 if TYPE_CHECKING:
     import os
@@ -44,10 +44,6 @@ if TYPE_CHECKING:
     from .mapping import Drawn
     from .papers import Layout, PaperLike
     from .windows import Window
-
-_FACTOR_TOLD = 1e-3
-"""A scale factor of the CRS farther from 1 is told in a note; UTM stays within it in its zone."""
-_LETTERS_SHOWN = 10
 
 
 class _Sheet(NamedTuple):
@@ -199,7 +195,8 @@ class Plan:
         ...     [file.name for file in ts.plan(tin, title="Yard").save(f"{folder}/yard.pdf")]
         ['yard.pdf']
         """
-        return write_sheets(path, self._draw(), len(self), self.paper, dpi, self._caption.title)
+        files = list_files(path, len(self))
+        return write_sheets(files, self._draw(), self.paper, dpi, self._caption.title)
 
     def _draw(self) -> Iterator[Canvas]:
         """Draw sheet after sheet, each when the one before is written."""
@@ -338,9 +335,7 @@ def plan(
     optional.load("matplotlib", PURPOSE)
     choice("layout", layout, SheetLayout)
     style = _Style(labels, points, grid)
-    heading = clean_text(parse_title(title, UNTITLED))
-    day = date.isoformat()[:10] if isinstance(date, dt.date) else date
-    day = clean_text(parse_text("date", day, or_none=True))
+    heading, day = read_words(title, date, UNTITLED)
     layouts = [arrange_sheet(one) for one in Paper.choices(paper, orientation)]
     unit = find_ground_unit(tin.crs, ground_unit)
     line, notes = _as_axis(axis, tin, layout)
@@ -464,17 +459,8 @@ def _list_notes(
     yield from contents.notes
     if interval is None and len(contents.contours):
         yield f"The contour interval {contents.interval:.12g} was chosen for the relief."
-    if factor is not None and abs(factor - 1.0) > _FACTOR_TOLD:
-        yield (
-            f"Lengths in the CRS are {factor:.5f} times those on the ground here: the scale "
-            f"{sheets[-1].scale.text} holds for lengths in the CRS."
-        )
-    missing = find_missing_letters("".join([caption.title, caption.date, *caption.facts]))
-    if missing:
-        yield (
-            f"The font has no {', '.join(repr(one) for one in missing[:_LETTERS_SHOWN])}: boxes "
-            "stand in their place."
-        )
+    yield from describe_factor(factor, sheets[-1].scale)
+    yield from describe_missing_letters([caption.title, caption.date, *caption.facts])
     yield from _describe_marks_outside(contents, sheets)
 
 

@@ -28,6 +28,8 @@ _THOUSANDS = re.compile(r"(?<=\d)[,\u2009\u00a0 ](?=\d{3}(?:\D|$))")
 _ALLOWED = "a number from 1 to 100,000,000 such as 500 for 1:500, or text such as '1\"=20 ft'"
 _RATIO_LEADS = (1.0, 2.0, 2.5, 5.0)
 _FOOT_LEADS = (1.0, 2.0, 3.0, 4.0, 5.0, 6.0)
+_FACTOR_TOLD = 1e-3
+"""A scale factor of the CRS farther from 1 is told in a note; UTM stays within it in its zone."""
 _LARGEST_ERROR = 0.01
 """Of a CRS's own scale: with more, a plan at 1:500 measures visibly wrong."""
 
@@ -172,6 +174,15 @@ def measure_scale_factor(crs: CRS | None, x: float, y: float) -> float | None:
             crs=crs,
         )
     return worst
+
+
+def describe_factor(factor: float | None, scale: Scale) -> Iterator[str]:
+    """Tell a scale factor of the CRS that is far from 1."""
+    if factor is not None and abs(factor - 1.0) > _FACTOR_TOLD:
+        yield (
+            f"Lengths in the CRS are {factor:.5f} times those on the ground here: the scale "
+            f"{scale.text} holds for lengths in the CRS."
+        )
 
 
 def _find_factors(crs: CRS, x: float, y: float) -> tuple[float, float] | None:

@@ -2,29 +2,31 @@
 
 from __future__ import annotations
 
+import datetime as dt
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from ...tin import Bounds
-from ..drawing import NORTH_ARROW, make_scale_bar, palette
+from ..drawing import NORTH_ARROW, make_scale_bar, palette, parse_text, parse_title
 from .canvas import INK, Pen
 from .grid import PEN as GRID_PEN
-from .lettering import fit_text
+from .lettering import clean_text, find_missing_letters, fit_text
 from .mapping import CONTOUR_PENS, LINE_PENS, MATCH_PEN, OUTLINE_PEN
 from .windows import outline, turn
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterator, Sequence
 
     from ...base.crs import Unit
-    from .canvas import Canvas
+    from .canvas import Drawable
     from .papers import Layout
     from .windows import Window
 
 _BORDER = Pen(INK, 0.5)
 _RULE = Pen(INK, 0.25)
 _THIN = Pen(INK, 0.13)
+_LETTERS_SHOWN = 10
 _LEGEND = {
     "contour": "contour",
     "index contour": "index contour",
@@ -64,30 +66,52 @@ class Caption(NamedTuple):
     """Of the coordinates."""
 
 
+def read_words(title: str | None, date: dt.date | str | None, untitled: str) -> tuple[str, str]:
+    """Return a title and a date as they are written; OptionError if one is no text."""
+    heading = clean_text(parse_title(title, untitled))
+    day = date.isoformat()[:10] if isinstance(date, dt.date) else date
+    return heading, clean_text(parse_text("date", day, or_none=True))
+
+
+def describe_missing_letters(texts: Sequence[str]) -> Iterator[str]:
+    """Tell which letters of texts the font does not have."""
+    missing = find_missing_letters("".join(texts))
+    if missing:
+        yield (
+            f"The font has no {', '.join(repr(one) for one in missing[:_LETTERS_SHOWN])}: boxes "
+            "stand in their place."
+        )
+
+
 def draw_title_block(
-    canvas: Canvas, layout: Layout, window: Window, caption: Caption, kinds: Sequence[str]
+    canvas: Drawable, layout: Layout, window: Window, caption: Caption, kinds: Sequence[str]
 ) -> bool:
     """Draw border and title block; tell whether all of its texts had room.
 
     The legend explains ``kinds``.
     """
+    draw_border(canvas, layout)
+    _draw_legend(canvas, layout, kinds)
+    _draw_north_arrow(canvas, layout, window.angle)
+    draw_scale_bar(canvas, layout, window.mm_per_unit, caption.unit)
+    return draw_title(canvas, layout, caption)
+
+
+def draw_border(canvas: Drawable, layout: Layout) -> None:
+    """Draw the border of a sheet, and rules around the cells of the title block."""
     canvas.draw_paths([outline(layout.border)], _BORDER, "border")
     top = layout.title.ymax
     rules = [np.array([(layout.border.xmin, top), (layout.border.xmax, top)])]
     for cell in (layout.scales, layout.title):
         rules.append(np.array([(cell.xmin, cell.ymin), (cell.xmin, cell.ymax)]))
     canvas.draw_paths(rules, _RULE, "rules")
-    _draw_legend(canvas, layout, kinds)
-    _draw_north_arrow(canvas, layout, window.angle)
-    _draw_scale_bar(canvas, layout, window, caption)
-    return _draw_title(canvas, layout, caption)
 
 
 # ---------------------------------------------------------------- title
 
 
-def _draw_title(canvas: Canvas, layout: Layout, caption: Caption) -> bool:
-    """Write title and facts on the left, scale, date and sheet below on the right."""
+def draw_title(canvas: Drawable, layout: Layout, caption: Caption) -> bool:
+    """Write title and facts, below them scale, date and sheet; tell whether all had room."""
     cell, factor = layout.title, layout.factor
     pad, foot = 2.0 * factor, 9.5 * factor
     width = cell.width - 2 * pad
@@ -107,7 +131,7 @@ def _draw_title(canvas: Canvas, layout: Layout, caption: Caption) -> bool:
     return not (_draw_foot(canvas, layout, caption, foot) | is_cut | fitted.is_cut)
 
 
-def _write_facts(canvas: Canvas, room: Bounds, facts: Sequence[str], factor: float) -> bool:
+def _write_facts(canvas: Drawable, room: Bounds, facts: Sequence[str], factor: float) -> bool:
     """Write a line for each fact, smaller where there are many; tell whether one was cut."""
     step = min(3.6 * factor, room.height / max(1, len(facts)))
     size = min(2.2 * factor, 0.72 * step)
@@ -120,7 +144,7 @@ def _write_facts(canvas: Canvas, room: Bounds, facts: Sequence[str], factor: flo
     return is_cut
 
 
-def _draw_foot(canvas: Canvas, layout: Layout, caption: Caption, height: float) -> bool:
+def _draw_foot(canvas: Drawable, layout: Layout, caption: Caption, height: float) -> bool:
     cell, factor = layout.title, layout.factor
     top = cell.ymin + height
     shares = np.cumsum([0.0, 0.4, 0.3, 0.3]) * cell.width + cell.xmin
@@ -147,7 +171,7 @@ def _draw_foot(canvas: Canvas, layout: Layout, caption: Caption, height: float) 
 # ---------------------------------------------------------------- north and scale
 
 
-def _draw_north_arrow(canvas: Canvas, layout: Layout, angle: float) -> None:
+def _draw_north_arrow(canvas: Drawable, layout: Layout, angle: float) -> None:
     """Draw an arrow to grid north, turned against the sheet."""
     cell, factor = layout.scales, layout.factor
     middle = np.array([cell.xmin + cell.width / 2, cell.ymin + 0.66 * cell.height])
@@ -166,11 +190,11 @@ def _draw_north_arrow(canvas: Canvas, layout: Layout, angle: float) -> None:
     )
 
 
-def _draw_scale_bar(canvas: Canvas, layout: Layout, window: Window, caption: Caption) -> None:
+def draw_scale_bar(canvas: Drawable, layout: Layout, mm_per_unit: float, unit: Unit) -> None:
     """Draw a bar of four parts, black and white, with its ends and middle labelled."""
     cell, factor = layout.scales, layout.factor
-    bar = make_scale_bar(caption.unit, (cell.width - 12.0 * factor) / window.mm_per_unit)
-    width, height = bar.length * window.mm_per_unit, 1.5 * factor
+    bar = make_scale_bar(unit, (cell.width - 12.0 * factor) / mm_per_unit)
+    width, height = bar.length * mm_per_unit, 1.5 * factor
     left, low = cell.xmin + (cell.width - width) / 2, cell.ymin + 3.4 * factor
     for part in range(4):
         box = Bounds(left + part * width / 4, low, left + (part + 1) * width / 4, low + height)
@@ -187,7 +211,7 @@ def _draw_scale_bar(canvas: Canvas, layout: Layout, window: Window, caption: Cap
         )
     canvas.write(
         (left + width / 2, low - 0.7 * factor),
-        bar.symbol or caption.unit.name,
+        bar.symbol or unit.name,
         size=1.9 * factor,
         across="center",
         up="top",
@@ -198,7 +222,7 @@ def _draw_scale_bar(canvas: Canvas, layout: Layout, window: Window, caption: Cap
 # ---------------------------------------------------------------- legend
 
 
-def _draw_legend(canvas: Canvas, layout: Layout, kinds: Sequence[str]) -> None:
+def _draw_legend(canvas: Drawable, layout: Layout, kinds: Sequence[str]) -> None:
     """Explain what is drawn, in columns from left to right."""
     cell, factor = layout.legend, layout.factor
     listed = [kind for kind in _LEGEND if kind in kinds]
@@ -220,7 +244,7 @@ def _draw_legend(canvas: Canvas, layout: Layout, kinds: Sequence[str]) -> None:
                      up="center_baseline", name="legend")  # fmt: skip
 
 
-def _draw_sample(canvas: Canvas, kind: str, x: float, y: float, factor: float) -> None:
+def _draw_sample(canvas: Drawable, kind: str, x: float, y: float, factor: float) -> None:
     width = 9.5 * factor
     if kind == "water area":
         box = Bounds(x, y - 1.3 * factor, x + width, y + 1.3 * factor)

@@ -112,7 +112,8 @@ def as_axis(given: Any, crs: CRS | None, start: Any, what: str, product: str = "
     features = as_features(given, what)
     them = f"the {what}s" if product else f"the {what}"
     notes = require_same_crs(features.crs, crs, them, is_plain=not hasattr(given, "crs"))
-    return Axis(lines_to_segments(features, start, product or what), None, crs, notes)
+    segments = lines_to_segments(features, start, product or what)
+    return Axis(segments, None, crs, (*features.notes, *notes))
 
 
 def lines_to_segments(features: Features, start: Any, what: str) -> Segments:

@@ -129,10 +129,10 @@ def section_volumes(
     how: dict[str, Any] = {"left": reaches[0], "right": reaches[1], "start": start}
     measured = cross_sections(surfaces, centreline, stations=at, **how)
     done(0.2)
-    areas = _measure_areas(measured, len(at)) * reference.up
+    areas = measure_section_areas(measured, len(at), "difference_design") * reference.up
     half_way = (at[1:] + at[:-1]) / 2.0
     middle = cross_sections(surfaces, centreline, stations=half_way, **how)
-    between = _measure_areas(middle, len(half_way)) * reference.up
+    between = measure_section_areas(middle, len(half_way), "difference_design") * reference.up
     done(0.4)
     strips = _sweep(axis, at, reaches)
     exact = _measure_strips((ground, design), strips, threads, done)
@@ -181,10 +181,13 @@ def _list_units(columns: dict[str, Any], reference: Any) -> dict[str, Any]:
 # ---------------------------------------------------------------- areas
 
 
-def _measure_areas(table: Table, count: int) -> Float64Array:
-    """Return cut and fill of each section, (count, 2), offsets times elevations."""
+def measure_section_areas(table: Table, count: int, difference: str) -> Float64Array:
+    """Return cut and fill of each section, (count, 2), offsets times elevations.
+
+    ``difference`` is the column of how far the other surface is above the first.
+    """
     section: Int64Array = table["section"]
-    offset, above = table["offset"], table["difference_design"]
+    offset, above = table["offset"], table[difference]
     is_step = (np.diff(section) == 0) & np.isfinite(above[1:]) & np.isfinite(above[:-1])
     run, owner = np.diff(offset)[is_step], section[:-1][is_step]
     first, last = above[:-1][is_step], above[1:][is_step]

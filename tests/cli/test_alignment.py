@@ -1,5 +1,6 @@
 """``tinsmith alignment`` and ``tinsmith sections``: files written, and what is refused."""
 
+import json
 from pathlib import Path
 
 import numpy as np
@@ -104,3 +105,70 @@ def test_what_cannot_be_is_refused(words, said, road):
     assert done.exit_code in (1, 2), done.output
     assert said in done.output
     assert "Traceback" not in done.output
+
+
+SECTIONS = (
+    *("sections", "ground.gpkg", "design.gpkg", "--line", "road.xml"),
+    *("--interval", 10, "--width", 12),
+)
+
+
+def test_drawn_sections_are_those_of_the_library(road):
+    options = (
+        "--scale",
+        100,
+        "--paper",
+        "A3",
+        "--orientation",
+        "landscape",
+        "--date",
+        "2026-11-27",
+        "--exaggeration",
+        2,
+    )
+    outputs = ("-o", "road.pdf", "-o", "road.svg", "-o", "road.dxf", "-o", "road.csv")
+    done = CliRunner().invoke(main, [str(one) for one in (*SECTIONS, *options, *outputs, "--json")])
+    assert done.exit_code == 0, done.output
+    record = json.loads(done.stdout)
+    assert (record["scale"], record["paper"]) == (100, [420.0, 297.0])
+    assert record["sheets"] > 1
+    ground, design = (ts.read_tin(f"{name}.gpkg") for name in ("ground", "design"))
+    made = ts.section_sheets(
+        {"ground": ground, "design": design}, ts.read_alignment("road.xml"), interval=10, width=12,
+        scale=100, paper="A3", orientation="landscape", date="2026-11-27", exaggeration=2,
+        title="Cross sections: design",
+    )  # fmt: skip
+    pages = [file.name for file in made.list_files("road.svg")]
+    assert record["outputs"] == ["road.csv", "road.pdf", *pages, "road.dxf"]
+    made.save("own.pdf")
+    assert Path("own.pdf").read_bytes() == Path("road.pdf").read_bytes()
+    assert {*made.notes} <= {*record["notes"]}
+    assert len(record["notes"]) == len({*record["notes"]})
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (["-o", "q.csv", "--scale", 200], "--scale is for drawn sections"),
+        (["-o", "q.csv", "--title", "Road"], "--title is for drawn sections"),
+        (["-o", "q.pdf", "--scale", 1], "--scale '1:1': it must be 1:"),
+        (["-o", "q.pdf", "--paper", "B9"], "--paper"),
+        (["-o", "q.pdf", "--exaggeration", 0], "--exaggeration"),
+        (["-o", "q.pdf", "-o", "q.pdf"], "q.pdf"),
+        (["-o", "q.jpg"], "q.jpg"),
+    ],
+)
+def test_sheets_that_cannot_be_are_refused(words, said, road):
+    done = CliRunner().invoke(main, [str(one) for one in (*SECTIONS, *words)])
+    assert done.exit_code in (1, 2), done.output
+    assert said in done.output
+    assert not list(Path().glob("q.*"))
+
+
+def test_a_page_never_overwrites_an_input(road):
+    Path("road-01.svg").write_bytes(Path("ground.gpkg").read_bytes())
+    words = ["road-01.svg", *SECTIONS[2:], "--scale", 100, "--paper", "A4", "-o", "road.svg"]
+    done = CliRunner().invoke(main, ["sections", *map(str, words), "--format", "gpkg"])
+    assert done.exit_code == 2, done.output
+    assert "cannot be the output too" in done.output
+    assert Path("road-01.svg").read_bytes() == Path("ground.gpkg").read_bytes()

@@ -21,6 +21,7 @@ LISTED_BY = {
     **dict.fromkeys(("Triangulation", "Lines and areas", "Codes of points"), "build"),
     "Tiles, for more points than memory holds": "raster",
     **dict.fromkeys(("Reprojection", "Coordinates on the ground", "Input", "Output"), "convert"),
+    "Sheets": "plan",
 }
 """Subjects of options that only the help of one of the commands lists that have them."""
 _OF_FORMATS = "tinsmith.options_of_formats"

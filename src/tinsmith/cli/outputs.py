@@ -32,6 +32,8 @@ if TYPE_CHECKING:
     Product = TIN | Survey | Features | Raster | Table
 
 _DOTS = 150
+DOCUMENTS = ("sheets", "report")
+"""Kinds of what is drawn on sheets of paper."""
 _WAYS = {
     "TIN": ": 'tinsmith build' makes a TIN of points.",
     "Raster": ": 'tinsmith raster' makes one of a surface.",
@@ -67,9 +69,17 @@ class Products:
     pictures: list[Path] = field(default_factory=list)
     tabulates: bool = False
     """Whether tables are those of the features' columns."""
+    documents: list[Path] = field(default_factory=list)
+    """Sheets or reports, whose pages may be files of their own."""
+    pages: list[Path] = field(default_factory=list)
+    """Files of documents that were written."""
+    inputs: Sequence[Named] = ()
+    """Files that are read."""
 
     def holds(self, kind: str) -> bool:
         """Whether something of a kind is to be written."""
+        if kind in DOCUMENTS:
+            return bool(self.documents)
         return bool(self.pictures if kind == "picture" else self.outputs.get(kind))
 
     def write(self, kind: str, product: Any) -> None:
@@ -90,10 +100,23 @@ class Products:
             with self.console.step("Drawing"):
                 write_figure(make_figure(), path, dpi=_DOTS)
 
+    def save(self, document: Any) -> None:
+        """Write sheets or a report, each page of it perhaps to a file of its own."""
+        for path in self.documents:
+            if hasattr(document, "list_files"):  # no page must overwrite an input either
+                files = document.list_files(path)
+                require_separate(self.inputs, [Named(one, "--output") for one in files])
+            with self.console.step(f"Writing {path.name}"):
+                written = document.save(path)
+            for one in written:
+                note_written(one)
+            self.pages.extend(written)
+
     @property
     def paths(self) -> list[Path]:
         """All of them."""
-        return [one.path for group in self.outputs.values() for one in group] + self.pictures
+        planned = [one.path for group in self.outputs.values() for one in group]
+        return [*planned, *self.pictures, *self.pages]
 
 
 def describe_file(path: Path) -> str:
@@ -121,8 +144,9 @@ def plan_products(
     """Choose what each output holds and its format, and compare all paths, before any work.
 
     What will be written is one of the ``kinds``: "TIN", "Survey", "Features", "Raster", "Table",
-    "Alignment", "picture". Features that have no table of their own are written to tables too. With
-    ``choose`` an output may be any of them until that function has seen its formats.
+    "Alignment", "picture", "sheets", "report". Features that have no table of their own are written
+    to tables too. With ``choose`` an output may be any of them until that function has seen its
+    formats.
     """
     placed = [split_output(path) for path in paths]
     _compare_paths(placed, inputs, report, writing.options)
@@ -130,11 +154,11 @@ def plan_products(
     tabulates = "Features" in kinds and "Table" not in kinds
     able = (*kinds, "Table") if tabulates else kinds
     outputs: dict[str, list[Output]] = {}
-    pictures: list[Path] = []
+    drawn: dict[str, list[Path]] = {kind: [] for kind in ("picture", *DOCUMENTS)}
     for path, layer in placed:
         kind = "" if choose is not None else _find_kind(path, writing, able)
-        if kind == "picture":
-            pictures.append(path)
+        if kind in drawn:
+            drawn[kind].append(path)
             continue
         formats = _choose_formats(path, writing.output_format, (kind,) if kind else kinds)
         suffixes = [suffix for one in formats.values() for suffix in one.suffixes]
@@ -146,7 +170,14 @@ def plan_products(
     _require_layered(planned)
     _require_taken(planned, writing.options)
     _require_free_stdout(planned, console)
-    return Products(console=console, outputs=outputs, pictures=pictures, tabulates=tabulates)
+    return Products(
+        console=console,
+        outputs=outputs,
+        pictures=drawn.pop("picture"),
+        tabulates=tabulates,
+        documents=[path for paths in drawn.values() for path in paths],
+        inputs=inputs,
+    )
 
 
 def _compare_paths(
@@ -177,10 +208,22 @@ def _find_kind(path: Path, writing: Writing, kinds: Sequence[str]) -> str:
     suffix = path.suffix.lower() if name is None else f".{name.strip().lower().lstrip('.')}"
     if suffix in PICTURE_SUFFIXES and "picture" in kinds:
         return "picture"
+    for kind in DOCUMENTS:
+        if kind in kinds and name is None and suffix in list_document_suffixes(kind):
+            return kind
     for kind in ("Table", "Alignment", "Features", "TIN"):
         if kind in kinds and list_writers(path, name, kind):
             return kind
-    return next(kind for kind in kinds if kind != "picture")  # whose refusal names what it takes
+    return next(
+        kind for kind in kinds if kind not in ("picture", *DOCUMENTS)
+    )  # whose refusal names what it takes
+
+
+def list_document_suffixes(kind: str) -> Sequence[str]:
+    """Return the suffixes of files of "sheets" or of a "report"."""
+    from ..terrain.plans import REPORT_SUFFIXES, SHEET_SUFFIXES
+
+    return SHEET_SUFFIXES if kind == "sheets" else REPORT_SUFFIXES
 
 
 def require_format(flag: str, name: str | None) -> None:

@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from ....base.sentences import counted
-from ...axes import alignment_option, read_axis
 from ...command import command
 from ...job import Job, surface_options
+from ...option_groups import alignment_option, read_axis
 from ...options import CONSOLE, WRITING
 from ...output import Facts
 from ...output.failures import Failure

@@ -10,6 +10,7 @@ import click
 from ....base.sentences import counted
 from ...command import command
 from ...job import Job, name_features, surface_options
+from ...option_groups import sheet_options
 from ...options import CONSOLE, READING, TRIANGULATING
 from ...output import Facts
 from ...output.failures import note_written
@@ -23,20 +24,8 @@ _PLAN = "terrain.plans.production.plan"
 @command
 @input_file("file")
 @output_option("Plan to write (.pdf, .svg, .png).", required=True)
-@click.option(
-    "--scale",
-    metavar="SCALE",
-    help="Scale, such as 500 for 1:500, or '1\"=20 ft'; default the largest usual one that fits.",
-)
-@click.option(
-    "--paper",
-    metavar="NAME",
-    default="A3",
-    show_default=True,
-    help="A4 to A0, Letter, Legal, Tabloid, 'ANSI A' to 'ANSI E', 'ARCH A' to 'ARCH E', or width "
-    "and height in millimetres such as 900x600.",
-)
-@product_options(_PLAN, "orientation layout")
+@sheet_options("scale paper orientation title date ground_unit")
+@product_options(_PLAN, "layout")
 @file_option("--axis", "Vector file of the axis of strips.", name="axis_file")
 @product_options(
     _PLAN,
@@ -44,13 +33,6 @@ _PLAN = "terrain.plans.production.plan"
     smooth="Smooth contours, as long as the surface stays within this height of the level.",
     points="Marks and labels of points.",
     grid="Style of the coordinate grid.",
-)
-@click.option("--title", metavar="TEXT", help="Title of the plan; default the name of the file.")
-@product_options(
-    _PLAN,
-    "date ground_unit",
-    date="Date in the title block, as text.",
-    ground_unit="Unit of eastings and northings, if the CRS is not known.",
 )
 @number_option(
     "--dpi", "N", "Pixels per inch of a PNG.", type=click.IntRange(50, 1200), default=200
@@ -66,7 +48,7 @@ def plan(file: Path, job: Job, dpi: int, axis_file: Path | None, **asked: Any) -
       tinsmith plan sample_data/site_survey.csv --crs EPSG:32616 --codes --scale 1000 -o plan.pdf
     """
     from .... import terrain
-    from ....terrain.plans.files import PLAN_SUFFIXES
+    from ....terrain.plans import PLAN_SUFFIXES
     from ...outputs import describe_file
 
     if asked["scale"] is None and asked["layout"] != "single":
@@ -80,7 +62,6 @@ def plan(file: Path, job: Job, dpi: int, axis_file: Path | None, **asked: Any) -
             )
     tin, survey = job.read_surface(file)
     asked["title"] = asked["title"] or make_title(file)
-    asked["paper"] = _parse_paper(asked["paper"])
     axis = None
     if axis_file is not None:
         axis = job.read_features(axis_file, tin, "lines", "an axis is a line")
@@ -105,13 +86,3 @@ def plan(file: Path, job: Job, dpi: int, axis_file: Path | None, **asked: Any) -
     job.console.summarise([*facts.lines, ("Written", files)])
     if job.console.as_json:
         job.console.emit_record(facts.values)
-
-
-def _parse_paper(text: str) -> str | tuple[float, float]:
-    """Return the name of a paper, or width and height such as 900x600."""
-    parts = text.lower().replace("mm", "").split("x")
-    try:
-        width, height = (float(part) for part in parts)
-    except ValueError:
-        return text
-    return width, height

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from ....base.sentences import counted
-from ...axes import axis_options, holds_alignments, read_axis
 from ...command import command
 from ...job import Job, name_features
+from ...option_groups import axis_options, holds_alignments, read_axis
 from ...output import Facts, mesh_counts
 from ...parameters import LibraryOption, number_option, output_files, position_option
 from ...paths import INPUT, make_title
@@ -131,7 +131,7 @@ def _list_facts(
     facts.extend(rows)
     facts.add("Rows", f"{len(table):,}", rows=len(table), columns=list(table.columns))
     facts.record(ranges={name: _find_range(table[name]) for name in measured})
-    facts.note([*notes, *table.notes])
+    facts.note(dict.fromkeys([*notes, *table.notes]))
     return facts
 
 

@@ -7,24 +7,34 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
+from click.core import ParameterSource
 
-from ...axes import axis_options, holds_alignments, read_axis
+from ....base.products import notes_of_surfaces
+from ....base.sentences import counted
 from ...command import command
 from ...job import Job, name_features, surface_options
+from ...option_groups import axis_options, holds_alignments, read_axis, sheet_options
 from ...output import Facts, list_rows, mesh_counts, name_units
-from ...parameters import output_option
+from ...outputs import list_document_suffixes
+from ...parameters import number_option, output_option
 from ...paths import INPUT, make_title
 from ...product_options import product_options
 
 if TYPE_CHECKING:
-    from ....terrain import Table
+    from ....terrain import SectionSheets, Table
     from ...output.console import Row
+    from ...outputs import Products
+
+_OF_SHEETS = ("scale", "paper", "orientation", "title", "date", "ground_unit", "exaggeration")
 
 
 @command
 @click.argument("ground", type=INPUT)
 @click.argument("design", type=INPUT)
-@output_option("Table (.csv, .json) or diagram of mass haul (.png) to write.")
+@output_option(
+    "Table (.csv, .json), diagram of mass haul (.png) or drawn sections (.pdf, .svg, .dxf) to "
+    "write."
+)
 @axis_options("LandXML, DXF or vector file of the axis.")
 @product_options(
     "terrain.sections.quantities.section_volumes",
@@ -35,6 +45,10 @@ if TYPE_CHECKING:
     right="How far sections reach to the right instead.",
     start="Station where a line begins; an alignment has its own.",
 )
+@number_option(
+    "--exaggeration", "FACTOR", "How many times elevations are drawn larger.", default=1.0
+)
+@sheet_options("scale paper orientation title date ground_unit")
 @surface_options()
 def sections(ground: Path, design: Path, line_file: Path | None, job: Job, **asked: Any) -> None:
     """Compute cut and fill from the TIN in GROUND to that in DESIGN, section by section.
@@ -45,16 +59,17 @@ def sections(ground: Path, design: Path, line_file: Path | None, job: Job, **ask
 
     Example:
       tinsmith sections ground.csv design.csv --line road.xml --interval 20 --width 30
-        -o quantities.csv -o mass-haul.png
+        -o quantities.csv -o mass-haul.png -o sheets.pdf
     """
-    from ....terrain import mass_haul_picture, section_volumes
+    from ....terrain import mass_haul_picture, section_sheets, section_volumes
 
     if line_file is None:
         raise click.UsageError("An axis is needed: --line FILE.")
     if asked["interval"] is None:
         raise click.UsageError("The interval of the sections is needed: --interval LENGTH.")
     more = name_features(line_file, "the file of --line")
-    planned = job.plan(job.list_inputs(ground, design, more=more), "Table", "picture")
+    planned = job.plan(job.list_inputs(ground, design, more=more), "Table", "picture", "sheets")
+    sheets = _take_sheets(asked, planned)
     surfaces = job.read_tins([ground, design])
     first, second = surfaces
     axis = read_axis(line_file, asked.pop("alignment"), crs=first.crs)
@@ -68,8 +83,42 @@ def sections(ground: Path, design: Path, line_file: Path | None, job: Job, **ask
         table = section_volumes(first, second, axis, progress=progress, **asked)
     planned.write("Table", table)
     planned.draw(lambda: mass_haul_picture(table, title=title))
+    drawn = None
+    if planned.holds("sheets"):
+        with job.step("Drawing"):
+            named = {"ground": first, "design": second}
+            where = {name: asked[name] for name in ("interval", "width", "left", "right")}
+            words = sheets.pop("title") or f"Cross sections: {make_title(design)}"
+            drawn = section_sheets(named, axis, title=words, **where, **sheets)
+        planned.save(drawn)
     rows = list(zip(("Ground", "Design"), map(mesh_counts, surfaces), strict=True))
-    job.finish(planned, _list_facts([ground, design], table, rows))
+    facts = _list_facts([ground, design], table, rows)
+    if drawn is not None:
+        _add_sheets(facts, drawn, {*table.notes, *notes_of_surfaces(surfaces)})
+    job.finish(planned, facts)
+
+
+def _take_sheets(asked: dict[str, Any], planned: Products) -> dict[str, Any]:
+    """Take what sheets are asked for; refuse it where there are none."""
+    sheets = {name: asked.pop(name) for name in _OF_SHEETS}
+    if not planned.holds("sheets"):
+        context = click.get_current_context()
+        for name in _OF_SHEETS:
+            if context.get_parameter_source(name) is ParameterSource.COMMANDLINE:
+                flag = f"--{name.replace('_', '-')}"
+                suffixes = ", ".join(list_document_suffixes("sheets"))
+                raise click.UsageError(
+                    f"{flag} is for drawn sections: name a file that ends in {suffixes}."
+                )
+    return sheets
+
+
+def _add_sheets(facts: Facts, drawn: SectionSheets, told: set[str]) -> None:
+    """Add what was drawn, and notes that are not told already."""
+    facts.add("Scale", drawn.scale_text, scale=drawn.scale)
+    many = counted(len(drawn), "sheet")
+    facts.add("Sheets", f"{many}, {drawn.paper_name}", paper=list(drawn.paper), sheets=len(drawn))
+    facts.note(note for note in drawn.notes if note not in told)
 
 
 def _list_facts(files: list[Path], table: Table, rows: list[Row]) -> Facts:

@@ -8,10 +8,9 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from ....base.sentences import counted
-from ...axes import axis_options, read_axis
 from ...command import command
-from ...ground_coordinates import GROUND_COORDINATES, tell_factor
 from ...job import Job, name_features, surface_options
+from ...option_groups import GROUND_COORDINATES, axis_options, read_axis, tell_factor
 from ...options import CONSOLE, TRIANGULATING, WRITING, make_reading
 from ...output import Facts, list_rows, mesh_counts, name_units
 from ...parameters import file_option, input_file, numbers_option, output_option

@@ -10,6 +10,7 @@ import click
 from ...command import command
 from ...error_options import error_options, name_flag, take_errors
 from ...job import Job, name_features
+from ...option_groups import sheet_options
 from ...output import Facts, list_rows, mesh_counts, name_units
 from ...parameters import file_option, number_option, output_option
 from ...paths import INPUT, make_title
@@ -56,7 +57,7 @@ _LEAST_AREA = 0.005
 )
 @number_option("--level", "ELEVATION", "Level of the table.", name="levels", multiple=True)
 @number_option("--interval", "LENGTH", "Interval of the levels of the table.")
-@click.option("--title", metavar="TEXT", help="Title of the map; default the names of the files.")
+@sheet_options("title")
 @error_options
 @tiled_options()
 def volume(files: tuple[Path, ...], regions: Path | None, job: Job, **asked: Any) -> None:

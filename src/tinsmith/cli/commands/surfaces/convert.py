@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 from ....base.sentences import counted
 from ...command import file_command
-from ...ground_coordinates import GROUND_COORDINATES, tell_factor
 from ...job import Job, surface_options
+from ...option_groups import GROUND_COORDINATES, tell_factor
 from ...options import CONSOLE, READING, WRITING
 from ...output import Facts
 from ...output.failures import Failure

@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from .parameters import file_option
+from ..parameters import file_option
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from ..terrain import Alignment
+    from ...terrain import Alignment
 
 
 def alignment_option(where: str) -> Callable[[Any], Any]:
@@ -38,8 +38,8 @@ def read_axis(
 
     A CRS is that of a file that names none; a line of a vector file is reprojected to it.
     """
-    from ..io import read_alignment
-    from ..io.vector.survey_lines import split_layer
+    from ...io import read_alignment
+    from ...io.vector.survey_lines import split_layer
 
     file, layer = split_layer(path)
     return read_alignment(file, name, layer=layer, crs=crs, unit=unit)
@@ -47,7 +47,7 @@ def read_axis(
 
 def holds_alignments(path: Path) -> bool:
     """Whether the format of a file has alignments, and not lines alone."""
-    from ..io.alignments import holds_alignments as holds
-    from ..io.vector.survey_lines import split_layer
+    from ...io.alignments import holds_alignments as holds
+    from ...io.vector.survey_lines import split_layer
 
     return holds(split_layer(path)[0])

@@ -7,13 +7,13 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from .options import Group
-from .parameters import number_option, under
+from ..options import Group
+from ..parameters import number_option, under
 
 if TYPE_CHECKING:
-    from ..terrain import CombinedFactor
-    from ..tin import TIN, Survey
-    from .output import Facts
+    from ...terrain import CombinedFactor
+    from ...tin import TIN, Survey
+    from ..output import Facts
 
 
 @dataclass(frozen=True)
@@ -36,7 +36,7 @@ class GroundCoordinates:
         self.require_fitting()
         if not self.to_ground:
             return None
-        from ..terrain import CombinedFactor, combined_factor
+        from ...terrain import CombinedFactor, combined_factor
 
         if self.combined_factor is None:
             return combined_factor(places, point=self.factor_base, undulation=self.undulation)

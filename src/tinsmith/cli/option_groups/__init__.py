@@ -1,0 +1,15 @@
+"""Options that several commands share: axes, sheets of paper, coordinates on the ground."""
+
+from .axes import alignment_option, axis_options, holds_alignments, read_axis
+from .ground_coordinates import GROUND_COORDINATES, tell_factor
+from .sheets import sheet_options
+
+__all__ = [
+    "GROUND_COORDINATES",
+    "alignment_option",
+    "axis_options",
+    "holds_alignments",
+    "read_axis",
+    "sheet_options",
+    "tell_factor",
+]

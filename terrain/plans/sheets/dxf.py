@@ -1,0 +1,186 @@
+"""DXF: sheets side by side in the model space of a drawing, true to scale in the CRS's own unit."""
+
+from __future__ import annotations
+
+import io
+from contextlib import contextmanager
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ....base import optional
+from ....base.atomic import replacing
+from ....base.crs import FOOT, METRE, US_SURVEY_FOOT
+from ..canvas import HATCH_SPACING, INK
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator, Mapping, Sequence
+    from pathlib import Path
+
+    from ....base.arrays import Float64Array
+    from ....base.crs import Unit
+    from ..canvas import Drawable, Pen
+
+_CAPITAL = 0.73
+"""Height of capitals, which DXF measures texts by, by the size of letters."""
+_WEIGHTS = np.array([13, 18, 25, 35, 50, 70, 100])
+"""Widths of lines that drawings have, hundredths of a millimetre."""
+_CODES = {METRE: 6, FOOT: 2, US_SURVEY_FOOT: 21}
+"""Units of ``$INSUNITS``."""
+_ODD = '<>/\\":;?*|=`,'
+_LONGEST = 100
+_STYLE = "SHEETS"
+_SPACE = 20.0
+"""Millimetres between sheets."""
+
+
+def write_drawing(
+    path: Path,
+    drawers: Sequence[Callable[[Drawable], None]],
+    width: float,
+    unit: Unit,
+    mm_per_unit: float,
+    layers: Mapping[str, str],
+    properties: Mapping[str, str],
+) -> None:
+    """Write sheets of a width in millimetres, each drawn by a function, from left to right.
+
+    ``layers`` are the names of layers by those of what is drawn; what is in none of them is on the
+    layer of "".
+    """
+    ezdxf = optional.load("ezdxf", "Sheets as a drawing")
+    with _fix_dates():
+        document = ezdxf.new("R2010")
+        document.header["$INSUNITS"] = _CODES.get(unit, 0)
+        document.header["$MEASUREMENT"] = int(unit not in (FOOT, US_SURVEY_FOOT))
+        document.styles.add(_STYLE, font="arial.ttf")
+        for name, value in properties.items():
+            document.header.custom_vars.append(name, value)
+        for number, draw in enumerate(drawers):
+            draw(DxfCanvas(document, number * (width + _SPACE), 1.0 / mm_per_unit, layers))
+        zoom = optional.load("ezdxf.zoom", "Sheets as a drawing")
+        zoom.extents(document.modelspace())
+        stream = io.StringIO(newline="\n")
+        document.write(stream)
+    with replacing(path) as file:
+        file.write(stream.getvalue().replace("\r\n", "\n").encode("utf-8", "replace"))
+
+
+@contextmanager
+def _fix_dates() -> Iterator[None]:
+    """Let ezdxf write the same dates and identifiers at any time."""
+    options = import_module("ezdxf").options
+    before = options.write_fixed_meta_data_for_testing
+    options.write_fixed_meta_data_for_testing = True
+    try:
+        yield
+    finally:
+        options.write_fixed_meta_data_for_testing = before
+
+
+def name_layers(names: Sequence[str], taken: Sequence[str]) -> list[str]:
+    """Return a layer for each name: without the letters that DXF refuses, and none of them twice.
+
+    Examples
+    --------
+    >>> name_layers(["ground", "Ground", "a/b", "GRID"], ["GRID"])
+    ['ground', 'Ground_2', 'a_b', 'GRID_2']
+    """
+    known = {one.casefold() for one in taken}
+    layers = []
+    for name in names:
+        plain = "".join("_" if one in _ODD or not one.isprintable() else one for one in name)
+        plain = plain.strip()[:_LONGEST] or "_"
+        chosen, number = plain, 1
+        while chosen.casefold() in known:
+            number += 1
+            chosen = f"{plain}_{number}"
+        known.add(chosen.casefold())
+        layers.append(chosen)
+    return layers
+
+
+class DxfCanvas:
+    """A sheet in the model space of a drawing."""
+
+    def __init__(
+        self, document: Any, left: float, units_per_mm: float, layers: Mapping[str, str]
+    ) -> None:
+        self._document = document
+        self._space = document.modelspace()
+        self._left = left
+        self._factor = units_per_mm
+        self._layers = layers
+
+    def draw_paths(self, parts: Sequence[Float64Array], pen: Pen, name: str) -> None:
+        """Draw polylines in the plane, on the layer of what they are."""
+        how = self._style(name, pen.color)
+        how["lineweight"] = int(_WEIGHTS[np.abs(_WEIGHTS - 100.0 * pen.width).argmin()])
+        if pen.dashes:
+            how["linetype"] = self._find_linetype(pen.dashes)
+        for part in parts:
+            self._space.add_lwpolyline(self._place(part).tolist(), dxfattribs=how)
+
+    def fill(self, rings: Sequence[Float64Array], color: str, name: str) -> None:
+        """Fill the area within rings."""
+        hatch = self._space.add_hatch(dxfattribs=self._style(name, color))
+        for ring in rings:
+            hatch.paths.add_polyline_path(self._place(ring[:-1]).tolist(), is_closed=True)
+
+    def hatch(self, ring: Float64Array, pen: Pen, angle: float, name: str) -> None:
+        """Add a hatch of parallel lines."""
+        hatch = self._space.add_hatch(dxfattribs=self._style(name, pen.color))
+        step = HATCH_SPACING * self._factor
+        turned = np.radians(angle)
+        offset = (-step * float(np.sin(turned)), step * float(np.cos(turned)))
+        hatch.set_pattern_definition([[angle, (0.0, 0.0), offset, []]], factor=1.0)
+        hatch.dxf.hatch_style = 0
+        hatch.dxf.pattern_name = name.upper()
+        hatch.paths.add_polyline_path(self._place(ring[:-1]).tolist(), is_closed=True)
+
+    def write(
+        self,
+        place: tuple[float, float],
+        text: str,
+        *,
+        size: float,
+        color: str = INK,
+        rotation: float = 0.0,
+        across: str = "left",
+        up: str = "baseline",
+        name: str | None = None,
+    ) -> None:
+        """Write a text on one line; ``size`` is that of its letters in millimetres."""
+        how = self._style(name or "", color) | {"style": _STYLE, "rotation": rotation}
+        made = self._space.add_text(text, height=_CAPITAL * size * self._factor, dxfattribs=how)
+        heights = {"center_baseline": "MIDDLE", "center": "MIDDLE", "top": "TOP"}
+        enums = optional.load("ezdxf.enums", "Sheets as a drawing")
+        row = heights.get(up, "")
+        word = f"{row}_{across.upper()}" if row else across.upper()
+        at = self._place(np.array([place], np.float64))[0].tolist()
+        made.set_placement(at, align=enums.TextEntityAlignment[word])
+
+    def _place(self, mm: Float64Array) -> Float64Array:
+        placed: Float64Array = (
+            np.asarray(mm, np.float64) + np.array([self._left, 0.0])
+        ) * self._factor
+        return placed
+
+    def _style(self, name: str, color: str) -> dict[str, Any]:
+        layer = self._layers.get(name, self._layers[""])
+        value = int(color[1:], 16) if color.startswith("#") else 0xFFFFFF
+        if layer not in self._document.layers:
+            self._document.layers.add(layer).dxf.true_color = value
+        return {"layer": layer, "true_color": value}
+
+    def _find_linetype(self, dashes: tuple[float, ...]) -> str:
+        name = "DASHES_" + "_".join(f"{10 * one:.0f}" for one in dashes)
+        if name not in self._document.linetypes:
+            lengths = [
+                one * self._factor * (-1.0 if number % 2 else 1.0)
+                for number, one in enumerate(dashes)
+            ]
+            pattern = [sum(map(abs, lengths)), *lengths]
+            self._document.linetypes.add(name, pattern, description="dashes of sheets")
+        return name

@@ -1,0 +1,342 @@
+"""Production: sheets of cross sections, from surfaces to files."""
+
+from __future__ import annotations
+
+from functools import partial
+from typing import TYPE_CHECKING, Any
+
+from ....base import optional
+from ....base.checks import as_number
+from ....base.notes import join_notes
+from ....base.products import product
+from ....base.sentences import counted
+from ...sections import as_reaches, as_surfaces, cross_sections
+from ..canvas import Canvas
+from ..files import SHEET_SUFFIXES, list_files, write_sheets
+from ..lettering import PURPOSE
+from ..papers import Paper, arrange_sheet
+from ..scales import Scale, describe_factor, find_ground_unit, measure_scale_factor
+from ..title_block import Caption, describe_missing_letters, draw_border, draw_title, read_words
+from .arrangement import Request, arrange
+from .cells import Cell
+from .dxf import name_layers, write_drawing
+from .gathering import (
+    Units,
+    describe_elevations,
+    describe_sections,
+    list_sections,
+    name_surfaces,
+)
+from .legend import draw_legend, draw_scales
+
+if TYPE_CHECKING:
+    import datetime as dt
+    import os
+    from collections.abc import Iterator, Mapping, Sequence
+    from pathlib import Path
+
+    from numpy.typing import ArrayLike
+
+    from ....base.crs import UnitLike
+    from ....tin import TIN
+    from ..canvas import Drawable
+    from ..papers import PaperLike
+    from .arrangement import Drawing
+
+_UNTITLED = "Cross sections"
+_MOST_EXAGGERATED = 100.0
+_LAYERS = {
+    "": "SHEET",
+    "grid": "GRID",
+    "frame-of-section": "GRID",
+    "datum": "DATUM",
+    "centreline": "CENTRELINE",
+    "cut": "CUT",
+    "cut-hatch": "CUT",
+    "fill": "FILL",
+    "fill-hatch": "FILL",
+    "elevation-label": "LABELS",
+    "station-label": "LABELS",
+    "areas-label": "LABELS",
+    "figure-name": "LABELS",
+    "figure": "LABELS",
+}
+"""Layers of a drawing by what is drawn; surfaces have their own."""
+
+
+class SectionSheets:
+    """Cross sections on sheets of paper, ready to be written; of :func:`tinsmith.section_sheets`.
+
+    Attributes
+    ----------
+    scale : float
+        Denominator: 200 of 1:200.
+    scale_text : str
+        As it stands on the sheets.
+    exaggeration : float
+        How many times elevations are drawn larger than offsets.
+    paper : tuple of float
+        Width and height of a sheet, millimetres.
+    paper_name : str
+    sections : int
+        How many are drawn, each on one sheet.
+    notes : tuple of str
+        What was chosen or assumed, and after :meth:`save` what had no room, in sentences.
+
+    Examples
+    --------
+    >>> import tinsmith as ts
+    >>> ground = ts.triangulate(
+    ...     [[0, 0, 5], [40, 0, 6], [40, 30, 8], [0, 30, 7]], crs="EPSG:32616"
+    ... )
+    >>> ts.section_sheets(ground, [[5, 15], [35, 15]], interval=10, width=20, scale=100)
+    <SectionSheets: 4 sections on 1 sheet, A3 portrait, 1:100>
+    """
+
+    def __init__(
+        self, drawing: Drawing, exaggeration: float, caption: Caption, notes: Sequence[str]
+    ) -> None:
+        self._drawing = drawing
+        self._caption = caption
+        self.scale = drawing.scale.denominator
+        self.scale_text = drawing.scale.text
+        self.exaggeration = exaggeration
+        paper = drawing.layout.paper
+        self.paper = (paper.width, paper.height)
+        self.paper_name = paper.name
+        self.sections = len(drawing.sections)
+        self._notes = tuple(notes)
+        self._is_cut = False
+
+    def __len__(self) -> int:
+        return len(self._drawing.sheets)
+
+    def __repr__(self) -> str:
+        what = f"{counted(self.sections, 'section')} on {counted(len(self), 'sheet')}"
+        return f"<SectionSheets: {what}, {self.paper_name}, {self.scale_text}>"
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What was chosen or assumed, and after :meth:`save` what had no room, in sentences."""
+        cut = ("Texts were cut, for they had no room: give shorter ones, or larger paper.",)
+        return (*self._notes, *(cut if self._is_cut else ()))
+
+    def with_notes(self, notes: Sequence[str]) -> SectionSheets:
+        """Return the same with further notes in front of its own.
+
+        Examples
+        --------
+        >>> import tinsmith as ts
+        >>> tin = ts.triangulate([[0, 0, 5], [40, 0, 6], [0, 30, 8]], crs="EPSG:32616")
+        >>> sheets = ts.section_sheets(tin, [[5, 5], [15, 5]], interval=10, width=4)
+        >>> sheets.with_notes(["One row was left out."]).notes[0]
+        'One row was left out.'
+        """
+        joined = join_notes(notes, self._notes)
+        return SectionSheets(self._drawing, self.exaggeration, self._caption, joined)
+
+    def list_files(self, path: str | os.PathLike[str]) -> list[Path]:
+        """Return the names of the files that :meth:`save` writes.
+
+        Examples
+        --------
+        >>> import tinsmith as ts
+        >>> tin = ts.triangulate([[0, 0, 5], [40, 0, 6], [0, 30, 8]], crs="EPSG:32616")
+        >>> sheets = ts.section_sheets(tin, [[5, 5], [15, 5]], interval=2, width=4, scale=20)
+        >>> [file.name for file in sheets.list_files("road.svg")]
+        ['road-1.svg', 'road-2.svg']
+        """
+        return list_files(path, len(self), SHEET_SUFFIXES, "section sheets")
+
+    def save(self, path: str | os.PathLike[str]) -> list[Path]:
+        """Write the sheets: as pages of a PDF, as SVGs, or side by side in one DXF drawing.
+
+        Parameters
+        ----------
+        path : path
+            Of several SVGs the names end in their numbers: road-1.svg, road-2.svg. A drawing is in
+            the CRS's own unit, so that a length in it along a section is that on the ground; each
+            surface has a layer of its own name.
+
+        Returns
+        -------
+        list of pathlib.Path
+            The files written: all of them whole, or the old ones are left as they were.
+
+        Raises
+        ------
+        OptionError
+            If the path is none.
+        RenderError
+            If the suffix is another.
+        WriteError
+            If a file cannot be written.
+        MissingExtraError
+            If matplotlib, or ezdxf for a drawing, is not installed.
+
+        Examples
+        --------
+        >>> import tinsmith as ts
+        >>> from tempfile import TemporaryDirectory
+        >>> tin = ts.triangulate([[0, 0, 5], [40, 0, 6], [0, 30, 8]], crs="EPSG:32616")
+        >>> sheets = ts.section_sheets(tin, [[5, 5], [15, 5]], interval=10, width=4)
+        >>> with TemporaryDirectory() as folder:
+        ...     [file.name for file in sheets.save(f"{folder}/road.pdf")]
+        ['road.pdf']
+        """
+        files = self.list_files(path)
+        self._is_cut = False
+        if files[0].suffix.lower() != ".dxf":
+            return write_sheets(files, self._draw(), self.paper, 100, self._caption.title)
+        named = name_layers(self._drawing.measures.names, sorted(set(_LAYERS.values())))
+        layers = {f"surface{number}": layer for number, layer in enumerate(named, 1)}
+        write_drawing(
+            files[0],
+            [partial(self._draw_sheet, number) for number in range(len(self))],
+            self.paper[0],
+            self._caption.unit,
+            self._drawing.measures.along,
+            _LAYERS | layers,
+            {"Title": self._caption.title, "Scale": self.scale_text},
+        )
+        return files
+
+    def _draw(self) -> Iterator[Canvas]:
+        """Draw sheet after sheet, each when the one before is written."""
+        for number in range(len(self)):
+            canvas = Canvas(self._drawing.layout.paper)
+            self._draw_sheet(number, canvas)
+            yield canvas
+
+    def _draw_sheet(self, number: int, canvas: Drawable) -> None:
+        """Draw a sheet, by its number from 0."""
+        drawn, layout = self._drawing, self._drawing.layout
+        caption = self._caption._replace(sheet=f"Sheet {number + 1} of {len(self)}")
+        draw_border(canvas, layout)
+        scales = (drawn.scale.text, self._describe_elevations())
+        have_room = [
+            draw_legend(canvas, layout, drawn.measures.names),
+            draw_scales(canvas, layout, drawn.measures, scales, caption.unit),
+            draw_title(canvas, layout, caption),
+        ]
+        for spot in drawn.sheets[number]:
+            cell = Cell(canvas, drawn.measures, drawn.sections[spot.section])
+            have_room.append(cell.draw(spot.place))
+        self._is_cut |= not all(have_room)
+
+    def _describe_elevations(self) -> str:
+        """Return the scale of elevations."""
+        if self.exaggeration == 1.0:
+            return self.scale_text
+        return f"1:{self.scale / self.exaggeration:.6g}  ({self.exaggeration:.6g} times)"
+
+
+@product
+def section_sheets(
+    tin: TIN | Sequence[TIN] | Mapping[str, TIN],
+    centreline: Any,
+    *,
+    interval: float | None = None,
+    stations: ArrayLike | None = None,
+    width: float | None = None,
+    left: float | None = None,
+    right: float | None = None,
+    start: float = 0.0,
+    scale: float | str | None = None,
+    exaggeration: float = 1.0,
+    paper: PaperLike = "A3",
+    orientation: str | None = None,
+    title: str | None = None,
+    date: dt.date | str | None = None,
+    ground_unit: UnitLike | None = None,
+) -> SectionSheets:
+    """Draw cross sections on sheets true to scale, several to a sheet, with cut and fill.
+
+    Parameters
+    ----------
+    tin, centreline, interval, stations, width, left, right, start
+        As of :func:`tinsmith.cross_sections`; of several surfaces cut and fill are those from the
+        first to the second, and names of a mapping stand in the legend.
+    scale : float or str, optional
+        Of offsets, 200 or "1:200", as of :func:`tinsmith.plan`. Default the largest usual one with
+        which four sections have room on a sheet.
+    exaggeration : float
+        How many times elevations are drawn larger than offsets.
+    paper, orientation, title, date, ground_unit
+        As of :func:`tinsmith.plan`; the default title is "Cross sections".
+
+    Returns
+    -------
+    SectionSheets
+        ``save`` writes it as PDF, SVG or DXF.
+
+    Raises
+    ------
+    OptionError
+        As :func:`tinsmith.cross_sections` and :func:`tinsmith.plan`; if a section does not fit the
+        paper: the sentence names the scale that does; or if there are more than 5,000 sections.
+    LinesError, PointsError, CrsError
+        As :func:`tinsmith.cross_sections` and :func:`tinsmith.plan`.
+    MissingExtraError
+        If matplotlib is not installed.
+
+    Notes
+    -----
+    Sections follow each other from the bottom up, in columns from left to right; each is on one
+    sheet, whole. One millimetre along a section is exactly ``scale`` millimetres of the CRS's own
+    lengths. Each has a datum and a grid at round elevations and offsets, below it the elevations of
+    every surface at these offsets, above it its station, as it is written where there are station
+    equations, and the areas of cut and fill, in squares of the unit of eastings: those of
+    :func:`tinsmith.section_volumes`. The same surfaces and options give the same bytes.
+
+    Examples
+    --------
+    >>> import tinsmith as ts
+    >>> corners = [[0, 0], [60, 0], [60, 40], [0, 40]]
+    >>> site = {
+    ...     name: ts.triangulate([[x, y, z + x / 30] for x, y in corners], crs="EPSG:32616")
+    ...     for name, z in (("ground", 5.0), ("design", 6.0))
+    ... }
+    >>> sheets = ts.section_sheets(site, [[5, 20], [55, 20]], interval=10, width=24, scale=200)
+    >>> sheets
+    <SectionSheets: 6 sections on 1 sheet, A3 landscape, 1:200>
+    """
+    optional.load("matplotlib", PURPOSE)
+    words = read_words(title, date, _UNTITLED)
+    factor = as_number("exaggeration", exaggeration, above=0.0, most=_MOST_EXAGGERATED)
+    layouts = [arrange_sheet(one) for one in Paper.choices(paper, orientation)]
+    surfaces = as_surfaces(tin)
+    unit = find_ground_unit(surfaces.crs, ground_unit)
+    units = Units.of(unit, surfaces.crs, surfaces.elevation_unit)
+    asked = None if scale is None else Scale.of(scale, unit)
+    reaches = as_reaches(width, left, right)
+    table = cross_sections(
+        tin, centreline, interval=interval, stations=stations, left=reaches[0], right=reaches[1],
+        start=start,
+    )  # fmt: skip
+    request = Request(
+        tuple(list_sections(table, surfaces.names, units)),
+        name_surfaces(surfaces.names),
+        (-reaches[0], reaches[1]),
+        unit,
+        units.factor * factor,
+    )
+    drawing = arrange(request, layouts, asked)
+    own = measure_scale_factor(surfaces.crs, *(float(table[name].mean()) for name in ("x", "y")))
+    facts = [
+        f"CRS unknown, coordinates in {unit.symbol}"
+        if surfaces.crs is None
+        else surfaces.crs.caption,
+        describe_elevations(units, surfaces.elevation_unit is not None),
+        *describe_sections(table, drawing.measures.names, unit),
+        *([] if own is None else [f"Scale factor of the CRS here {own:.6f}"]),
+        f"True to scale on {drawing.layout.paper.name}",
+    ]
+    caption = Caption(words[0], tuple(facts), drawing.scale.text, "", words[1], unit)
+    texts = [words[0], words[1], *facts, *drawing.measures.names]
+    notes = [
+        *table.notes,
+        *describe_factor(own, drawing.scale),
+        *describe_missing_letters(texts),
+    ]
+    return SectionSheets(drawing, factor, caption, notes)
