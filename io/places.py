@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -64,7 +65,7 @@ def read_places(path: Path, *, crs: CrsLike | None = None) -> Features:
     try:
         found = read(file, crs=wanted)
     except ReadError:
-        if refused is not None:
+        if refused is not None and not _begins_with_numbers(file):
             raise refused from None
         raise
     if not isinstance(found, Survey):
@@ -81,6 +82,12 @@ def _is_of(path: Path, folder: str) -> bool:
     """Whether the suffix of a file is that of a format of one of the folders of formats."""
     claims = list_claims(known_formats(), path)
     return any(f".{folder}." in str(one.read) for one in claims)
+
+
+def _begins_with_numbers(path: Path) -> bool:
+    """Whether the first line of a text has numbers, and no names of columns."""
+    with path.open(encoding="utf-8-sig", errors="replace") as file:
+        return any(map(str.isdecimal, re.split(r"[,;.\s]+", file.readline())))
 
 
 def _require_points(found: Features) -> Features:

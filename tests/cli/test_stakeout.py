@@ -162,6 +162,10 @@ def test_points_of_a_survey_go_to_the_ground_with_their_lines(tmp_path):
         (("--at", "at.csv", "--to-ground", "--combined-factor", 1), "needs --factor-base"),
         (("--at", "design.gpkg:triangles"), "holds polygons: points are needed"),
         (("--at", "at.csv", "--decimals", 99), "from 0 to 15"),
+        (
+            ("--at", "at.csv", "--to-ground", "--combined-factor", 7, "--factor-base", 0, 0),
+            "Invalid --combined-factor 7.0: it must be a factor from 0.5 to 2.",
+        ),
     ],
 )
 def test_what_cannot_be_listed_is_refused_in_a_sentence(words, sentence):
@@ -195,5 +199,8 @@ def test_places_that_are_no_lengths_or_no_points_are_refused(tmp_path):
     Path("bad.csv").write_text("id,easting,northing\n1,700010,x\n")
     with pytest.raises(ts.ReadError, match="line 2, 'x'"):
         read_places(Path("bad.csv"), crs=CRS)
+    Path("plain.txt").write_text("7,4000010,700010,300,a\n8,x,700040,300,b\n")
+    with pytest.raises(ts.ReadError, match="PNEZD would have coordinates that are no numbers"):
+        read_places(Path("plain.txt"), crs=CRS)
     with pytest.raises(ts.ReadError, match="holds polygons: points are needed"):
         read_places(Path("design.gpkg:triangles"), crs=CRS)

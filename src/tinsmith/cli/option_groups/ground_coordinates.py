@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from ..options import Group
-from ..parameters import number_option, under
+from ..parameters import LibraryOption, number_option, under
 
 if TYPE_CHECKING:
     from ...terrain import CombinedFactor
@@ -70,7 +70,13 @@ GROUND_COORDINATES = Group(
             help="Write coordinates on the ground, whose distances are those that are measured: by "
             "the combined factor of the CRS in the middle of the input, at its mean elevation.",
         ),
-        number_option("--combined-factor", "FACTOR", "Grid over ground, in place of that factor."),
+        number_option(
+            "--combined-factor",
+            "FACTOR",
+            "Grid over ground, in place of that factor.",
+            cls=LibraryOption,
+            sets=("combined",),
+        ),
         click.option(
             "--factor-base",
             metavar="X Y",
