@@ -23,7 +23,7 @@ from ..base.plug_ins import describe_failure, warn_of_plug_in
 from ..base.progress import Progress
 from ..base.sentences import FILE, counted, inflect, printable
 from ..tin import TIN, Survey
-from .isolated.archives import unpack
+from .isolated.archives import unpack, unpack_member
 from .isolated.file_objects import as_bytes, is_file_object, name_stream
 from .isolated.spooling import (
     describe_system_error,
@@ -121,8 +121,8 @@ def read(
         A file, a file object of bytes or text that holds one, or a folder: a format of its own,
         tiles of lidar, or files of points of one format. Several files, or those of a folder, are
         one survey, whose attribute ``source_file`` says where each point is from. What is
-        compressed (``.gz``, ``.zip``) is unpacked, if one set of
-        data is in it.
+        compressed (``.gz``, ``.zip``) is unpacked, if one set of data is in it;
+        ``/vsizip/site.zip/points.csv`` names one of several files.
     format : str, optional
         Name of a format, to choose it whatever the file looks like.
     crs : CRS, str, int or pyproj.CRS, optional
@@ -230,6 +230,7 @@ def read_with_fallbacks(
     with ExitStack() as copies:
         if remote:
             places = [copies.enter_context(_localise(place)) for place in places]
+        places = [copies.enter_context(unpack_member(place)) for place in places]
         with done.passing_on(), checking_crs(check_crs):
             found = _read_several(require_paths(places), asked)
     done.end()

@@ -7,6 +7,7 @@ with others of its name beside it, as a shapefile has.
 from __future__ import annotations
 
 import gzip
+import re
 import shutil
 import stat
 import tempfile
@@ -14,7 +15,7 @@ import zipfile
 import zlib
 from contextlib import contextmanager
 from pathlib import Path, PurePosixPath
-from typing import IO, TYPE_CHECKING
+from typing import IO, TYPE_CHECKING, Any
 
 from ...base.atomic import scratch_folder
 from ...base.errors import ReadError, TinsmithError
@@ -56,6 +57,7 @@ _DAMAGES = (
     RuntimeError,
 )
 
+_MEMBER = re.compile(r"/vsizip/(.+?\.zip)/(.+)|zip://(.+?\.zip)!/?(.+)", re.IGNORECASE)
 _OFFICE = "[Content_Types].xml"
 
 
@@ -73,19 +75,51 @@ def unpack(path: Path) -> Iterator[Path]:
         yield path
         return
     with scratch_folder() as folder:
-        unpacker = _unpack_gzip if start.startswith(_GZIP) else _unpack_zip
-        with naming_file(path), translate_system_errors(path):
-            try:
-                inner = unpacker(path, Path(folder))
-            except TinsmithError:
-                raise
-            except _DAMAGES as error:
-                reason = " ".join(str(error).split()).rstrip(".") or type(error).__name__
-                raise ReadError(
-                    f"{FILE} cannot be unpacked, it may be damaged: {reason}."
-                ) from error
+        with _translate_damages(path):
+            unpacker = _unpack_gzip if start.startswith(_GZIP) else _unpack_zip
+            inner = unpacker(path, folder)
         with naming_copy(inner, path):
             yield inner
+
+
+@contextmanager
+def unpack_member(place: Any) -> Iterator[Any]:
+    """Yield a file of a ZIP archive that GDAL or fsspec would find; anything else as it is.
+
+    Parameters
+    ----------
+    place : path-like
+        Such as ``/vsizip/site.zip/points.csv`` or ``zip://site.zip!points.csv``.
+
+    Raises
+    ------
+    ReadError
+        If there is no such archive, or no such file in it.
+    """
+    found = _MEMBER.fullmatch(str(place)) if isinstance(place, str | Path) else None
+    if found is None:
+        yield place
+        return
+    path, name = Path(found[1] or found[3]), found[2] or found[4]
+    if not path.exists() and Path("/", path).exists():  # Path makes one slash of /vsizip//home
+        path = Path("/", path)
+    with scratch_folder() as folder:
+        with _translate_damages(path):
+            inner = _unpack_zip(path, folder, name)
+        yield inner
+
+
+@contextmanager
+def _translate_damages(path: Path) -> Iterator[None]:
+    """Raise what is wrong with an archive as a sentence."""
+    with naming_file(path), translate_system_errors(path):
+        try:
+            yield
+        except TinsmithError:
+            raise
+        except _DAMAGES as error:
+            reason = " ".join(str(error).split()).rstrip(".") or type(error).__name__
+            raise ReadError(f"{FILE} cannot be unpacked, it may be damaged: {reason}.") from error
 
 
 def _read_start(path: Path) -> bytes:
@@ -131,10 +165,10 @@ def _unpack_gzip(path: Path, folder: Path) -> Path:
     return inner
 
 
-def _unpack_zip(path: Path, folder: Path) -> Path:
+def _unpack_zip(path: Path, folder: Path, name: str = "") -> Path:
     with zipfile.ZipFile(path) as archive:
         members = _list_members(archive)
-        chosen = _choose_member(members)
+        chosen = _find_member(members, name) if name else _choose_member(members)
         budget = _Budget(path)
         stem = _strip(PurePosixPath(chosen.filename))
         for member in members:
@@ -174,6 +208,15 @@ def _strip(name: PurePosixPath) -> str:
     return str(name.parent / name.name.partition(".")[0]).casefold()
 
 
+def _find_member(members: Sequence[zipfile.ZipInfo], name: str) -> zipfile.ZipInfo:
+    found = [one for one in members if one.filename == name]
+    if not found:
+        names = ", ".join(one.filename for one in members[:5])
+        more = f" and {len(members) - 5:,} more" if len(members) > 5 else ""
+        raise ReadError(f"{FILE} has no file '{name}': it holds {names or 'none'}{more}.")
+    return found[-1]
+
+
 def _choose_member(members: Sequence[zipfile.ZipInfo]) -> zipfile.ZipInfo:
     """Return the only file that others stand beside, if there is only one."""
     if any(one.filename == _OFFICE for one in members):
@@ -191,5 +234,6 @@ def _choose_member(members: Sequence[zipfile.ZipInfo]) -> zipfile.ZipInfo:
     names = ", ".join(one.filename for one in main[:5])
     more = f" and {counted(len(main) - 5, 'more', 'more')}" if len(main) > 5 else ""
     raise ReadError(
-        f"{FILE} holds several files ({names}{more}): unpack it, and name the one to read.",
+        f"{FILE} holds several files ({names}{more}): unpack it, or name the one to read, as "
+        f"'/vsizip/ARCHIVE.zip/{main[0].filename}'.",
     )

@@ -2,6 +2,7 @@
 
 import gzip
 import io
+import re
 import zipfile
 from pathlib import Path
 
@@ -146,3 +147,28 @@ def test_damaged_archives(tmp_path, name):
             read(path)
         except ts.TinsmithError as error:
             assert str(path) in str(error)  # noqa: PT017 - it may be read as well
+
+
+def test_one_of_several_files_is_named_as_gdal_and_fsspec_do(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    with zipfile.ZipFile("site.zip", "w") as archive:
+        for number in (1, 2):
+            archive.writestr(
+                f"in/{number}.csv", f"number,easting,northing,elevation\n7,1,2,{number}\n"
+            )
+    ways = ("/vsizip/site.zip/in/2.csv", f"/vsizip/{tmp_path}/site.zip/in/2.csv",
+            Path(f"/vsizip/{tmp_path}/site.zip/in/2.csv"), "zip://site.zip!in/2.csv",
+            "zip://site.zip!/in/2.csv")  # fmt: skip
+    for way in ways:
+        found = ts.read(way)
+        assert (found.points[:, 2].tolist(), found.source) == ([2.0], "2.csv")
+    for way, sentence in {
+        "/vsizip/site.zip/3.csv": "'site.zip' has no file '3.csv': it holds in/1.csv, in/2.csv.",
+        "/vsizip/none.zip/3.csv": "There is no file 'none.zip'.",
+        "site.zip": "or name the one to read, as '/vsizip/ARCHIVE.zip/in/1.csv'.",
+    }.items():
+        with pytest.raises(ts.ReadError, match=re.escape(sentence)):
+            ts.read(way)
+    Path("broken.zip").write_bytes(Path("site.zip").read_bytes()[:60])
+    with pytest.raises(ts.ReadError, match="it may be damaged"):
+        ts.read("/vsizip/broken.zip/in/1.csv")
