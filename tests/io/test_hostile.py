@@ -305,10 +305,12 @@ def test_a_schema_and_a_crs_in_the_network_are_not_fetched(tmp_path, server):
         "/vsicurl/http://127.0.0.1:9/a.geojson",
         "/vsizip/a.zip/a.shp",
         "zip://a.zip!a.tif",
+        "/vsizip//vsicurl/http://127.0.0.1:9/a.zip/a.tif",
     ],
 )
 def test_addresses_are_no_files(name):
-    assert "download it first" in refused(read, name, ReadError)
+    wanted = "There is no file" if "zip" in name else "download it first"  # of this machine
+    assert wanted in refused(read, name, ReadError)
     assert "download it first" in refused(read_lines, name, ReadError)
     assert "download it first" in refused(read_rings, name, ReadError)
 
