@@ -50,8 +50,10 @@ from .isolines import contour_labels as contour_labels
 from .isolines import contours as contours
 from .plans import Plan as Plan
 from .plans import SectionSheets as SectionSheets
+from .plans import VolumeReport as VolumeReport
 from .plans import plan as plan
 from .plans import section_sheets as section_sheets
+from .plans import volume_report as volume_report
 from .relief.classes import aspect_classes as aspect_classes
 from .relief.classes import slope_classes as slope_classes
 from .relief.curvatures import curvature as curvature

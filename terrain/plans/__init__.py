@@ -2,6 +2,7 @@
 
 from .files import PLAN_SUFFIXES, REPORT_SUFFIXES, SHEET_SUFFIXES
 from .production import Plan, plan
+from .reports import VolumeReport, volume_report
 from .sheets import SectionSheets, section_sheets
 
 __all__ = [
@@ -10,6 +11,8 @@ __all__ = [
     "SHEET_SUFFIXES",
     "Plan",
     "SectionSheets",
+    "VolumeReport",
     "plan",
     "section_sheets",
+    "volume_report",
 ]

@@ -22,6 +22,8 @@ if TYPE_CHECKING:
     from .papers import Paper
 
 INK = palette.INK_PLAN
+GREY = palette.GREY_PLAN
+"""Of words that matter less."""
 POINTS_PER_MM = 72.0 / MM_PER_INCH
 
 _RULES = {

@@ -176,6 +176,20 @@ def measure_scale_factor(crs: CRS | None, x: float, y: float) -> float | None:
     return worst
 
 
+def describe_elevation_scale(scale: Scale, exaggeration: float) -> str:
+    """Return the scale of elevations that are drawn so many times larger.
+
+    Examples
+    --------
+    >>> from tinsmith.base.crs import METRE
+    >>> describe_elevation_scale(Scale.of(500, METRE), 5.0)
+    '1:100  (5 times)'
+    """
+    if exaggeration == 1.0:
+        return scale.text
+    return f"1:{_write(round(scale.denominator / exaggeration, 2))}  ({exaggeration:.6g} times)"
+
+
 def describe_factor(factor: float | None, scale: Scale) -> Iterator[str]:
     """Tell a scale factor of the CRS that is far from 1."""
     if factor is not None and abs(factor - 1.0) > _FACTOR_TOLD:

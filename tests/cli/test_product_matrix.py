@@ -31,6 +31,7 @@ OF_OTHERS = {*TABLES, ".geojson", ".geojsonl", ".gpkg", ".fgb", ".shp", ".parque
 OF_OTHER_KINDS = {
     "Plan": "a drawing",
     "SectionSheets": "a drawing",
+    "VolumeReport": "a document",
     "Preview": "a page",
     "Difference": "has parts of all kinds",
     "BalancedPad": "has a surface and a table",
@@ -117,8 +118,8 @@ COMMANDS = {
         "Table picture sheets",
     ),
     "stakeout": ("stakeout SITE --line LINE --interval 20", "Table Features"),
-    "volume": ("volume SITE --base 318", "Table Features picture"),
-    "volume of two": ("volume SITE OTHER", "Table Features picture"),
+    "volume": ("volume SITE --base 318", "Table Features picture report"),
+    "volume of two": ("volume SITE OTHER", "Table Features picture report"),
     "volume --stage-storage": ("volume SITE --stage-storage --interval 50", "Table"),
     "diff": ("diff SITE OTHER", "TIN Table Features picture"),
     "diff --zero-line": ("diff SITE OTHER --zero-line", "TIN Table Features picture"),

@@ -62,6 +62,7 @@ RESULTS = {
     "stage_storage": lambda tin: ts.stage_storage(tin, interval=50.0),
     "to_features": ts.to_features,
     "viewshed": lambda tin: ts.viewshed(tin, PLACE, eye_height=2.0),
+    "volume_report": lambda tin: ts.volume_report(tin, base=318.0),
     "volume": lambda tin: ts.volume(tin, base=318.0),
     "balance": lambda tin: ts.balance(tin, CORNER, cut_slope=2.0, fill_slope=2.0),
     # surfaces

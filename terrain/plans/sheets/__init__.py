@@ -1,5 +1,22 @@
 """Section sheets: cross sections on paper, each with its grid, its figures, its cut and fill."""
 
+from .cells import TINTS, Cell, Measures, Section, choose_measures
+from .gathering import Units, describe_elevations, list_sections
+from .legend import draw_legend, draw_samples, draw_scales
 from .production import SectionSheets, section_sheets
 
-__all__ = ["SectionSheets", "section_sheets"]
+__all__ = [
+    "TINTS",
+    "Cell",
+    "Measures",
+    "Section",
+    "SectionSheets",
+    "Units",
+    "choose_measures",
+    "describe_elevations",
+    "draw_legend",
+    "draw_samples",
+    "draw_scales",
+    "list_sections",
+    "section_sheets",
+]

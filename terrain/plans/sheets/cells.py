@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -250,11 +250,16 @@ class Cell:
             y = self._low - ROW * (row + 0.75)
             room = measures.left - 3.0
             fitted = fit_text(name, room, size=_SIZE, least=_LEAST_SIZE)
-            how: dict[str, Any] = {"size": fitted.size, "color": color, "name": "figure-name"}
-            canvas.write((self._left - 5.0, y), fitted.lines[0], across="right", **how)
+            canvas.write(
+                (self._left - 5.0, y),
+                fitted.lines[0],
+                size=fitted.size,
+                color=color,
+                across="right",
+                name="figure-name",
+            )
             for x, text in zip(at.tolist(), texts, strict=True):
-                how = {"size": _SIZE, "color": color, "name": "figure"}
-                canvas.write((x, y), text, across="center", **how)
+                canvas.write((x, y), text, size=_SIZE, color=color, across="center", name="figure")
             have_room &= not fitted.is_cut
         return have_room
 

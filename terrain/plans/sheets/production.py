@@ -15,7 +15,13 @@ from ..canvas import Canvas
 from ..files import SHEET_SUFFIXES, list_files, write_sheets
 from ..lettering import PURPOSE
 from ..papers import Paper, arrange_sheet
-from ..scales import Scale, describe_factor, find_ground_unit, measure_scale_factor
+from ..scales import (
+    Scale,
+    describe_elevation_scale,
+    describe_factor,
+    find_ground_unit,
+    measure_scale_factor,
+)
 from ..title_block import Caption, describe_missing_letters, draw_border, draw_title, read_words
 from .arrangement import Request, arrange
 from .cells import Cell
@@ -142,7 +148,7 @@ class SectionSheets:
         --------
         >>> import tinsmith as ts
         >>> tin = ts.triangulate([[0, 0, 5], [40, 0, 6], [0, 30, 8]], crs="EPSG:32616")
-        >>> sheets = ts.section_sheets(tin, [[5, 5], [15, 5]], interval=2, width=4, scale=20)
+        >>> sheets = ts.section_sheets(tin, [[5, 5], [15, 5]], interval=1, width=4, scale=20)
         >>> [file.name for file in sheets.list_files("road.svg")]
         ['road-1.svg', 'road-2.svg']
         """
@@ -213,22 +219,17 @@ class SectionSheets:
         drawn, layout = self._drawing, self._drawing.layout
         caption = self._caption._replace(sheet=f"Sheet {number + 1} of {len(self)}")
         draw_border(canvas, layout)
-        scales = (drawn.scale.text, self._describe_elevations())
+        up = describe_elevation_scale(drawn.scale, self.exaggeration)
+        scales = {"Offsets": drawn.scale.text, "Elevations": up}
         have_room = [
             draw_legend(canvas, layout, drawn.measures.names),
-            draw_scales(canvas, layout, drawn.measures, scales, caption.unit),
+            draw_scales(canvas, layout, drawn.measures.along, scales, caption.unit),
             draw_title(canvas, layout, caption),
         ]
         for spot in drawn.sheets[number]:
             cell = Cell(canvas, drawn.measures, drawn.sections[spot.section])
             have_room.append(cell.draw(spot.place))
         self._is_cut |= not all(have_room)
-
-    def _describe_elevations(self) -> str:
-        """Return the scale of elevations."""
-        if self.exaggeration == 1.0:
-            return self.scale_text
-        return f"1:{self.scale / self.exaggeration:.6g}  ({self.exaggeration:.6g} times)"
 
 
 @product

@@ -7,13 +7,15 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from ....base.products import notes_of_surfaces
+from ....base.sentences import counted
 from ...command import command
 from ...error_options import error_options, name_flag, take_errors
 from ...job import Job, name_features
 from ...option_groups import sheet_options
 from ...output import Facts, list_rows, mesh_counts, name_units
 from ...parameters import file_option, number_option, output_option
-from ...paths import INPUT, make_title
+from ...paths import INPUT, STANDARD, make_title
 from ...tiling import (
     choose_other,
     choose_tiles,
@@ -41,8 +43,8 @@ _LEAST_AREA = 0.005
 @command
 @click.argument("files", metavar="GROUND [DESIGN]", nargs=-1, required=True, type=INPUT)
 @output_option(
-    "Table (.csv, .json), parts that are cut and filled (.gpkg, .geojson, .shp, .fgb) or map "
-    "(.png) to write."
+    "Table (.csv, .json), parts that are cut and filled (.gpkg, .geojson, .shp, .fgb), map (.png) "
+    "or report to sign (.pdf) to write."
 )
 @number_option("--base", "ELEVATION", "Level in place of a design.")
 @file_option(
@@ -57,7 +59,7 @@ _LEAST_AREA = 0.005
 )
 @number_option("--level", "ELEVATION", "Level of the table.", name="levels", multiple=True)
 @number_option("--interval", "LENGTH", "Interval of the levels of the table.")
-@sheet_options("title")
+@sheet_options("title date ground_unit")
 @error_options
 @tiled_options()
 def volume(files: tuple[Path, ...], regions: Path | None, job: Job, **asked: Any) -> None:
@@ -73,17 +75,16 @@ def volume(files: tuple[Path, ...], regions: Path | None, job: Job, **asked: Any
       tinsmith volume sample_data/site_survey.csv --stage-storage --interval 0.5 -o stages.csv
       tinsmith volume sample_data/site_survey.csv --base 325 --standard-error 0.02 -o errors.csv
     """
-    from ....terrain import difference, earthwork_map, stage_storage
+    from ....terrain import difference, earthwork_map, stage_storage, volume_report
     from ....terrain import volume as measure
 
     errors = take_errors(asked)
     _require_one_base(files, asked, errors)
     inputs = job.list_inputs(*files, more=name_features(regions, "the file of --regions"))
-    kinds = ["Table"] if asked["stage_storage"] else ["Table", "Features", "picture"]
+    kinds = ["Table"] if asked["stage_storage"] else ["Table", "Features", "picture", "report"]
     planned = job.plan(inputs, *kinds)
-    held = [kind for kind in ("Features", "picture") if planned.holds(kind)]
-    whole = "--stage-storage" if asked["stage_storage"] else "a map" if held else ""
-    whole = whole or (name_flag(next(iter(errors))) if errors else "")
+    words = _take_words(files, asked, planned)
+    whole = _name_whole(asked, planned, errors)
     cloud = choose_tiles(job, files[0], whole=whole, others=files[1:])
     if cloud is not None:
         _measure_tiles(cloud, planned, files, {"regions": regions, "base": asked["base"]}, job)
@@ -91,22 +92,63 @@ def volume(files: tuple[Path, ...], regions: Path | None, job: Job, **asked: Any
     surfaces = job.read_tins(files)
     chosen = None if regions is None else job.read_features(regions, surfaces[0])
     base = asked["base"] if len(surfaces) == 1 else None
+    report = None
+    how = {"base": base, "regions": chosen, **errors}
     with job.step("Measuring") as progress:
         if asked["stage_storage"]:
             levels, interval = asked["levels"] or None, asked["interval"]
             table = stage_storage(surfaces[0], levels=levels, interval=interval, region=chosen)
+        elif planned.holds("report"):
+            told = {"files": files, **words, **how}
+            report = volume_report(*surfaces, progress=progress, **told)
+            found = report.difference
+            table = found.volumes
         elif planned.holds("Features") or planned.holds("picture"):
-            found = difference(*surfaces, base=base, regions=chosen, progress=progress, **errors)
+            found = difference(*surfaces, progress=progress, **how)
             table = found.volumes  # of the same overlay
         else:
-            table = measure(*surfaces, base=base, regions=chosen, progress=progress, **errors)
+            table = measure(*surfaces, progress=progress, **how)
     planned.write("Table", table)
     planned.write("Features", lambda: found.zones)
     title = asked["title"] or f"Cut and fill: {' to '.join(make_title(file) for file in files)}"
     planned.draw(lambda: earthwork_map(found, ground=surfaces[0], title=title))
     counts = map(mesh_counts, surfaces)
     rows = list(zip(("Ground", "Design"), counts))  # noqa: B905 - one or both
-    job.finish(planned, _list_facts(files, table, rows))
+    facts = _list_facts(files, table, rows)
+    if report is not None:
+        planned.save(report)
+        facts.add("Report", counted(len(report), "page"), pages=len(report))
+        known = {*table.notes, *notes_of_surfaces(surfaces)}
+        facts.note(note for note in report.notes if note not in known)
+    job.finish(planned, facts)
+
+
+def _name_whole(asked: dict[str, Any], planned: Products, errors: dict[str, Any]) -> str:
+    """Return what needs the whole surface at once, if something does."""
+    if asked["stage_storage"]:
+        return "--stage-storage"
+    if planned.holds("report"):
+        return "a report"
+    if planned.holds("Features") or planned.holds("picture"):
+        return "a map"
+    return name_flag(next(iter(errors))) if errors else ""
+
+
+def _take_words(files: Sequence[Path], asked: dict[str, Any], planned: Products) -> dict[str, Any]:
+    """Take what a report says; refuse it where there is none."""
+    words = {name: asked.pop(name) for name in ("date", "ground_unit")}
+    if planned.holds("report"):
+        if STANDARD in files:
+            raise click.UsageError(
+                "A report has the SHA-256 of each file, and standard input is none: name the file."
+            )
+        names = " to ".join(make_title(file) for file in files)
+        return words | {"title": asked["title"] or f"Volumes: {names}"}
+    for name, value in words.items():
+        if value is not None:
+            flag = f"--{name.replace('_', '-')}"
+            raise click.UsageError(f"{flag} is for a report: name a file that ends in .pdf.")
+    return words
 
 
 def _measure_tiles(
