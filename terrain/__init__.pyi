@@ -70,6 +70,10 @@ from .sections.alignments import Element as Element
 from .sections.alignments import StationEquation as StationEquation
 from .sections.alignments import VerticalAlignment as VerticalAlignment
 from .sections.alignments import VerticalPoint as VerticalPoint
+from .sections.corridors import Part as Part
+from .sections.corridors import Side as Side
+from .sections.corridors import Template as Template
+from .sections.corridors import corridor as corridor
 from .sections.staking import CombinedFactor as CombinedFactor
 from .sections.staking import combined_factor as combined_factor
 from .sections.staking import stake_points as stake_points

@@ -43,7 +43,9 @@ class QueryPoints:
     """What was assumed."""
 
 
-class _Table(NamedTuple):
+class TextTable(NamedTuple):
+    """The cells of a text file, as they stand there, and the lines of its rows."""
+
     header: list[str]
     rows: list[list[str]]
     lines: list[int]
@@ -82,7 +84,7 @@ def read_query_points(
     OptionError
         If there is no column of a name given, or the delimiter is no single character.
     """
-    table = _read_table(path, delimiter)
+    table = read_text_table(path, delimiter)
     chosen, notes = _find_coordinates(table.header, columns)
     xy = np.column_stack([_parse_numbers(table, column) for column in chosen])
     cells = np.array(table.rows, object).reshape(len(table.rows), len(table.header))
@@ -106,7 +108,8 @@ def _settle_header(points: QueryPoints, names: Sequence[str], crs: CRS | None) -
     return replace(points, xy=turned, notes=(f"{describe_turn(crs, names[0], names[1])}.",))
 
 
-def _read_table(path: Path, delimiter: str | None) -> _Table:
+def read_text_table(path: Path, delimiter: str | None) -> TextTable:
+    """Return the cells of a text file whose first line names the columns. Raises ReadError."""
     try:
         with path.open(encoding="utf-8-sig", newline="") as file:
             text = file.read()
@@ -135,7 +138,7 @@ def _read_table(path: Path, delimiter: str | None) -> _Table:
             f"{len(header)} of the header (first: line {uneven[0]}).",
             lines=uneven[:_SHOWN],
         )
-    return _Table(header, rows, numbers)
+    return TextTable(header, rows, numbers)
 
 
 def _find_delimiter(header: str, given: str | None) -> str:
@@ -170,7 +173,7 @@ def _find_coordinates(
     return (east, north), (note,)
 
 
-def _parse_numbers(table: _Table, column: int) -> Float64Array:
+def _parse_numbers(table: TextTable, column: int) -> Float64Array:
     values = np.array([_parse_number(row[column]) for row in table.rows], np.float64)
     wrong = np.flatnonzero(~np.isfinite(values))
     if len(wrong):

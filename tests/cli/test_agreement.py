@@ -549,6 +549,7 @@ AGREEMENTS = {
     "compare": [compare_algorithms],
     "contours": [compare_contours],
     "convert": [compare_converted],
+    "corridor": [compare_meshes("corridor", "k.ply", "Corridor", "road.geojson", "template.csv")],
     "diff": [compare_difference],
     "drape": [compare_draped],
     "edit": [compare_meshes("edit", "e.ply", "TIN", "edits.json")],
@@ -617,6 +618,10 @@ def folder(tmp_path, monkeypatch):
     write_features(tmp_path / "axis.geojson", ("axis", line))
     inner = {"type": "LineString", "coordinates": [[700_005, 4_000_005], [700_040, 4_000_040]]}
     write_features(tmp_path / "cut.geojson", ("axis", inner))
+    road = [[700_020, 4_000_020, 322], [700_030, 4_000_020, 322]]
+    write_features(tmp_path / "road.geojson", ("axis", {"type": "LineString", "coordinates": road}))
+    rows = ["side,name,width,slope,use,ratio", "both,lane,3,-0.02,,", "both,,,,cut,1"]
+    (tmp_path / "template.csv").write_text("\n".join([*rows, "both,,,,fill,1"]))
     edits = [{"op": "insert", "points": [[700_004, 4_000_004, 321]]}]
     (tmp_path / "edits.json").write_text(json.dumps(edits))
     return tmp_path

@@ -27,6 +27,7 @@ COMMANDS = {
     "refine": "refine TIN --min-angle 20 -o OUT.ply",
     "simplify": "simplify TIN --tolerance 0.1 -o OUT.ply",
     "grade": "grade TIN --pad PAD --elevation 305 --cut-slope 1 --fill-slope 1 -o OUT.ply",
+    "corridor": "corridor TIN ROAD TEMPLATE -o OUT.ply",
     "paste": "paste TIN PATCH -o OUT.ply",
     "merge": "merge PATCH TIN -o OUT.ply",
     "clip": "clip TIN --by PAD -o OUT.ply",
@@ -66,6 +67,8 @@ def files(tmp_path_factory):
         "TIN2": folder / "other.ply",
         "PATCH": folder / "patch.ply",
         "LINE": folder / "line.fgb",
+        "ROAD": folder / "road.fgb",
+        "TEMPLATE": folder / "template.csv",
         "PAD": folder / "pad.fgb",
         "EDITS": folder / "edits.json",
         "QUERY": folder / "query.csv",
@@ -76,6 +79,11 @@ def files(tmp_path_factory):
     ts.write(patch, made["PATCH"])
     ts.write(ts.Features.of_lines(ring[[0, 2]], [0, 2]), made["LINE"])
     ts.write(ts.Features.of_polygons(ring, [0, 5], [0, 1]), made["PAD"])
+    road = np.column_stack([ring[[0, 2]][:, :2], [304.0, 304.0]])
+    ts.write(ts.Features.of_lines(road, [0, 2]), made["ROAD"])
+    made["TEMPLATE"].write_text(
+        "side,name,width,slope,use,ratio\nboth,lane,1,,,\nboth,,,,cut,1\nboth,,,,fill,1\n"
+    )
     made["EDITS"].write_text('[{"op": "remove", "vertices": [4]}]')
     made["QUERY"].write_text(f"easting,northing\n{x},{y}\n")
     return {name: str(path) for name, path in made.items()} | {"X": str(y), "Y": str(x)}

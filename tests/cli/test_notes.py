@@ -20,6 +20,7 @@ COMMANDS = {
     "compare": ["--sample", 50],
     "contours": ["--interval", 1, "-o", "out.gpkg"],
     "convert": ["-o", "out.xyz"],
+    "corridor": ["road.geojson", "template.csv", "-o", "out.ply"],
     "diff": ["flat.csv", "-o", "out.ply"],
     "drape": ["ring.geojson", "-o", "out.gpkg"],
     "edit": ["edits.json", "-o", "out.ply"],
@@ -51,6 +52,9 @@ COMMANDS = {
 NO_INPUT = {"formats", "completion", "alignment"}
 POINTS_ALONE = {"compare", "convert", "ground", "info"}
 """Commands that make no surface, or none of all points: they know what the reader found."""
+
+
+TEMPLATE = "side,name,width,slope,use,ratio\nboth,lane,3,-0.02,,\nboth,,,,cut,1\nboth,,,,fill,1\n"
 
 
 def write_hill(folder):
@@ -89,6 +93,13 @@ def folder(tmp_path, monkeypatch):
     axis = {"type": "LineString", "coordinates": [[700_005, 4_000_005], [700_040, 4_000_040]]}
     collection["features"] = [feature | {"geometry": axis}]
     (tmp_path / "axis.geojson").write_text(json.dumps(collection))
+    road = {
+        "type": "LineString",
+        "coordinates": [[700_020, 4_000_020, 322], [700_030, 4_000_020, 322]],
+    }
+    collection["features"] = [feature | {"geometry": road}]
+    (tmp_path / "road.geojson").write_text(json.dumps(collection))
+    (tmp_path / "template.csv").write_text(TEMPLATE)
     edits = [{"op": "insert", "points": [[700_004, 4_000_004, 321]]}]
     (tmp_path / "edits.json").write_text(json.dumps(edits))
     return tmp_path

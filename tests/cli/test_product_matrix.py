@@ -148,6 +148,7 @@ OTHERS = {
     "view": "writes pages and pictures",
     "compare": "writes pictures",
     "grade": "writes a surface, as paste does",
+    "corridor": "writes a surface, as paste does",
     "ground": "writes points",
     "edit": "writes a surface, as convert does",
     "formats": "writes nothing",

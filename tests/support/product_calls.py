@@ -20,6 +20,8 @@ def make_hill(z=0.0):
 
 
 HILL = make_hill()
+AXIS = np.array([[700_020.0, 4_000_020, 322], [700_030, 4_000_020, 322]])
+ROAD = ts.Template(ts.Side([ts.Part("lane", 3.0, -0.02)], cut_slope=1, fill_slope=1))
 PLACE = [700_040.0, 4_000_041.0]
 LINE = [[700_003.0, 4_000_003.0], [700_090.0, 4_000_080.0]]
 RING = [[700_030, 4_000_030], [700_060, 4_000_030], [700_060, 4_000_060], [700_030, 4_000_060]]
@@ -67,6 +69,7 @@ RESULTS = {
     "balance": lambda tin: ts.balance(tin, CORNER, cut_slope=2.0, fill_slope=2.0),
     # surfaces
     "merge": lambda tin: ts.merge([ts.triangulate(add_height(RING, 330), crs=HILL.crs), tin]),
+    "corridor": lambda tin: ts.corridor(tin, AXIS, ROAD),
     "clip": lambda tin: ts.clip(tin, [RING]),
     "mend_flats": ts.mend_flats,
     "paste": lambda tin: ts.paste(tin, ts.triangulate(add_height(RING, 330), crs=HILL.crs)),

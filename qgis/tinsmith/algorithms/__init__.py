@@ -7,7 +7,7 @@ from .check import CheckAlgorithm
 from .contours import ContoursAlgorithm
 from .convert import ConvertAlgorithm
 from .flow import FlowAlgorithm
-from .grade import GradeAlgorithm
+from .grade import CorridorAlgorithm, GradeAlgorithm
 from .ground import GroundAlgorithm
 from .inspect import InspectAlgorithm
 from .install import InstallAlgorithm
@@ -37,6 +37,7 @@ ALGORITHMS = (
     FlowAlgorithm,
     SightAlgorithm,
     GradeAlgorithm,
+    CorridorAlgorithm,
     PasteAlgorithm,
     MergeAlgorithm,
     ClipAlgorithm,

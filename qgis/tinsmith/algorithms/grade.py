@@ -1,9 +1,12 @@
-"""Grade a pad into a TIN."""
+"""Grade a pad into a TIN, or a corridor along an axis."""
 
 from __future__ import annotations
 
 from typing import Any
 
+from qgis.core import QgsProcessingParameterFile
+
+from ..icons import load_icon
 from ..inputs import POLYGONS, Lines, Surface
 from ..options import number, switch, text
 from .base import CommandAlgorithm, Run
@@ -61,3 +64,49 @@ class GradeAlgorithm(CommandAlgorithm):
     def make(self, run: Run) -> dict[str, Any]:
         """Grade."""
         return self.make_mesh(run, "Graded TIN", ("cut", "fill"))
+
+
+class CorridorAlgorithm(CommandAlgorithm):
+    """Carry a cross section along an axis."""
+
+    verb = "corridor"
+    title = "Corridor"
+    summary = (
+        "Carries a cross section along an axis, with side slopes to where they meet the ground."
+    )
+    explanation = (
+        "The axis is a layer of one line in space, whose elevations are the profile; the command "
+        "takes alignments of LandXML, too. The template is a text file with a row for each part of "
+        "the cross section, from the axis outwards. Cut and fill are told, and in the log the "
+        "stations where a bend is sharper than the template is wide."
+    )
+    surfaces = (Surface(words="Ground"),)
+    lines = (Lines("LINE", "Axis", "--axis", "A layer of one line in space.", required=True),)
+    options = (
+        number("START", "First station", "--start", "From the start of the axis.", advanced=True),
+        number("END", "Last station", "--end", "From the start of the axis.", advanced=True),
+        number("INTERVAL", "Interval of sections", "--interval", "", least=0.0, advanced=True),
+    )
+
+    def icon(self) -> Any:
+        """Return that of a pad with its slopes."""
+        return load_icon("grade")
+
+    def add_outputs(self) -> None:
+        """Add the template, the TIN, volumes and counts for models."""
+        self.addParameter(QgsProcessingParameterFile("TEMPLATE", "Template (CSV)", extension="csv"))
+        self.add_mesh_output("Corridor")
+        self.add_numbers({"CUT": "Cut", "FILL": "Fill"})
+        self.add_counts()
+
+    def make(self, run: Run) -> dict[str, Any]:
+        """Lay out."""
+        return self.make_mesh(run, "Corridor", ("cut", "fill"))
+
+    def list_inputs(self, run: Run) -> list[str]:
+        """Return all arguments but the outputs."""
+        ground, *options = run.list_surface(self.surfaces[0])
+        axis = run.list_lines(self.lines)[0].partition("=")[2]
+        template = self.parameterAsFile(run.parameters, "TEMPLATE", run.context)
+        words = [self.verb, ground, axis, template, *options]
+        return [*words, *run.list_options(self.options), *run.list_extra()]

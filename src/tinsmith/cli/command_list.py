@@ -13,6 +13,7 @@ SECTIONS = {
         "refine": "Make a finite element mesh of a TIN.",
         "simplify": "Leave out points of a TIN or raster within a tolerance.",
         "grade": "Grade a pad into a TIN, with side slopes to the daylight line.",
+        "corridor": "Carry a cross section along an axis, with side slopes to the ground.",
         "paste": "Replace a part of one TIN by another.",
         "merge": "Put TINs beside and over each other together, by priority.",
         "clip": "Keep the part of a TIN inside polygons, or outside.",

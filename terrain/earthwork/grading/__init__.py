@@ -1,8 +1,28 @@
 """Surfaces put into others: pasted, and graded pads with their side slopes."""
 
 from .balances import BalancedPad, balance
-from .grades import grade
+from .grades import grade, outline_patch, require_on_ground
 from .merging import merge
-from .pasting import paste
+from .pads import Pad
+from .pasting import join_surfaces, paste
+from .seams import arrange_rings, find_area, measure_tolerance
+from .slopes import Slope, lie_on, meet_ground, require_ground
 
-__all__ = ["BalancedPad", "balance", "grade", "merge", "paste"]
+__all__ = [
+    "BalancedPad",
+    "Pad",
+    "Slope",
+    "arrange_rings",
+    "balance",
+    "find_area",
+    "grade",
+    "join_surfaces",
+    "lie_on",
+    "measure_tolerance",
+    "meet_ground",
+    "merge",
+    "outline_patch",
+    "paste",
+    "require_ground",
+    "require_on_ground",
+]

@@ -143,7 +143,7 @@ def make_patch(
         done(number * _SLOPE)
     patch = build_patch(tin, pad, slopes)
     most = _SHARE * patch.area
-    _require_on_ground(area, find_area(patch), "A slope reaches beyond", most)
+    require_on_ground(area, find_area(patch), "A slope reaches beyond", most)
     return patch
 
 
@@ -160,16 +160,13 @@ def require_slopes(cut_slope: Any, fill_slope: Any) -> tuple[float, float]:
     return cut, as_number("fill_slope", fill_slope, "a ratio", above=0, unit=unit)
 
 
-def require_on_ground(area: Any, polygon: Any) -> None:
-    """Refuse a pad that does not lie on the ground.
+def require_on_ground(
+    area: Any, shape: Any, what: str = "The pad lies off", most: float = 0.0
+) -> None:
+    """Refuse a pad, or a shape of which more than an area lies off the ground.
 
     Raises PointsError.
     """
-    _require_on_ground(area, polygon, "The pad lies off")
-
-
-def _require_on_ground(area: Any, shape: Any, what: str, most: float = 0.0) -> None:
-    """Refuse a shape of which more lies off the ground than an area."""
     import shapely
 
     beyond = shapely.difference(shape, area)
@@ -180,15 +177,8 @@ def _require_on_ground(area: Any, shape: Any, what: str, most: float = 0.0) -> N
 
 def build_patch(tin: TIN, pad: Pad, slopes: list[Slope]) -> TIN:
     """Return pad and slopes as one surface."""
-    tolerance = measure_tolerance(tin.points)
-    rims = [rim for slope in slopes for rim in slope.find_rim(pad.polygon, tolerance)]
-    edge = _insert(pad, rims, tolerance)
-    rings = _trace_outline(edge, rims, slopes)
-    breaks = [line for slope in slopes for line in slope.find_breaks()]
-    ends = np.concatenate([edge, *rims])
-    lines = [Breakline(edge, name="pad edge", priority=1)]
-    _snap(breaks, ends, tolerance)
-    lines += [Breakline(line, name="slope") for line in breaks if np.ptp(line[:, :2], axis=0).any()]
+    edge, rings, lines = outline_patch(tin, pad, slopes)
+    lines.insert(0, Breakline(edge, name="pad edge", priority=1))
     return triangulate(
         np.concatenate(rings),
         breaklines=lines,
@@ -197,6 +187,20 @@ def build_patch(tin: TIN, pad: Pad, slopes: list[Slope]) -> TIN:
         crs=tin.crs,
         elevation_unit=tin.elevation_unit,
     )
+
+
+def outline_patch(
+    tin: TIN, pad: Pad, slopes: list[Slope]
+) -> tuple[Float64Array, list[Float64Array], list[Breakline]]:
+    """Return the edge of a pad, the rings around pad and slopes, and lines where slopes break."""
+    tolerance = measure_tolerance(tin.points)
+    rims = [rim for slope in slopes for rim in slope.find_rim(pad.polygon, tolerance)]
+    edge = _insert(pad, rims, tolerance)
+    rings = _trace_outline(edge, rims, slopes)
+    breaks = [line for slope in slopes for line in slope.find_breaks()]
+    _snap(breaks, np.concatenate([edge, *rims]), tolerance)
+    lines = [Breakline(line, name="slope") for line in breaks if np.ptp(line[:, :2], axis=0).any()]
+    return edge, rings, lines
 
 
 def _insert(pad: Pad, rims: list[Float64Array], tolerance: float) -> Float64Array:

@@ -38,7 +38,7 @@ class Slope(NamedTuple):
         """Return the daylight lines, (k, 3) each."""
         start, end = _find_outline(self.surface, self.is_made)
         xy = self.surface.points[:, :2]
-        off = ~_lie_on(pad, (xy[start] + xy[end]) / 2, tolerance)
+        off = ~lie_on(pad, (xy[start] + xy[end]) / 2, tolerance)
         chains = join_segments(start[off], end[off])
         return [np.column_stack([xy[chain], self.elevations[chain]]) for chain in chains]
 
@@ -84,23 +84,44 @@ def find_slope(tin: TIN, area: Any, work: Pad, rate: float, reach: float) -> Slo
         points = distances.points * (1.0, 1.0, rate)
         points[:, 2] += work.measure_feet(points[:, :2])
         skirt = TIN.from_triangles(points, distances.triangles)
-        found = difference(_take_near(tin, skirt), skirt).tin
-        is_made = _find_made(found, pad, -np.sign(rate), tolerance)
-        elevations = _measure_elevations(found, skirt)
-        start, end = _find_outline(found, is_made, only_outer=True)
-        middles = (found.points[start, :2] + found.points[end, :2]) / 2
-        ends = middles[~_lie_on(pad, middles, tolerance)]
+        slope, ends = meet_ground(tin, skirt, pad, -np.sign(rate))
         if not len(ends):
-            return Slope(found, is_made, elevations)
-        lost = ends if far >= reach else ends[_lie_on(area, ends, tolerance)]
-        if len(lost):
-            x, y = lost[0]
-            raise PointsError(
-                f"The {'cut' if rate > 0 else 'fill'} slope does not meet the ground before it "
-                f"ends, at {coordinate(x)} {coordinate(y)}: a larger ground is needed, or a "
-                "steeper slope."
-            )
+            return slope
+        require_ground(ends if far >= reach else _take_on(area, ends, tolerance), rate)
         far = float(min(2.0 * far, reach))
+
+
+def meet_ground(tin: TIN, skirt: TIN, pad: Any, sign: float) -> tuple[Slope, Float64Array]:
+    """Return where a surface around a pad is cut into the ground, and where it ends before it.
+
+    ``sign`` is -1 of cuts, 1 of fills, ``pad`` a polygon of shapely. The ends, (k, 2), are middles
+    of edges at the outline of the surface, off the pad.
+    """
+    tolerance = measure_tolerance(tin.points)
+    found = difference(_take_near(tin, skirt), skirt).tin
+    is_made = _find_made(found, pad, sign, tolerance)
+    start, end = _find_outline(found, is_made, only_outer=True)
+    middles = (found.points[start, :2] + found.points[end, :2]) / 2
+    ends = middles[~lie_on(pad, middles, tolerance)]
+    return Slope(found, is_made, _measure_elevations(found, skirt)), ends
+
+
+def require_ground(lost: Float64Array, rate: float) -> None:
+    """Refuse a slope that ends at places before it meets the ground.
+
+    Raises PointsError.
+    """
+    if len(lost):
+        x, y = lost[0]
+        raise PointsError(
+            f"The {'cut' if rate > 0 else 'fill'} slope does not meet the ground before it "
+            f"ends, at {coordinate(x)} {coordinate(y)}: a larger ground is needed, or a "
+            "steeper slope."
+        )
+
+
+def _take_on(area: Any, places: Float64Array, tolerance: float) -> Float64Array:
+    return places[lie_on(area, places, tolerance)]
 
 
 def _estimate_reach(tin: TIN, work: Pad, rate: float) -> float:
@@ -131,7 +152,7 @@ def _find_made(found: TIN, pad: Any, sign: float, tolerance: float) -> BoolArray
     triangle, corner = np.nonzero((mesh.neighbors < 0) & (classes == sign)[:, None])
     start, end = topology.ends(mesh.triangles, triangle, corner)
     middles = (mesh.points[start, :2] + mesh.points[end, :2]) / 2
-    at_pad = triangle[_lie_on(pad, middles, tolerance)]
+    at_pad = triangle[lie_on(pad, middles, tolerance)]
     return np.isin(part, part[at_pad])
 
 
@@ -156,7 +177,7 @@ def _find_outline(
     return topology.ends(mesh.triangles, triangle, corner)
 
 
-def _lie_on(area: Any, xy: Float64Array, tolerance: float) -> BoolArray:
+def lie_on(area: Any, xy: Float64Array, tolerance: float) -> BoolArray:
     """Tell which places are on the outline of an area."""
     import shapely
 

@@ -1,0 +1,275 @@
+"""Layouts: bed and side slopes of a corridor in the plane, as far as the ground needs them."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from ....base.errors import LinesError
+from ....base.sentences import coordinate, counted
+from ....tin import TIN
+from ...earthwork.grading import (
+    Slope,
+    lie_on,
+    measure_tolerance,
+    meet_ground,
+    require_ground,
+    require_on_ground,
+)
+from .designs import Lay
+from .rays import Reach, lay_rays
+from .sheets import Rows, Sheet, build_sheet
+from .stations import choose_stations
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from ....base.arrays import BoolArray, Float64Array
+    from ....base.progress import Progress
+    from .axis import Axis
+    from .designs import Design
+    from .rays import Rays
+    from .sheets import Fold
+
+_SIGNS = {"cut": 1.0, "fill": -1.0}
+_SAMPLES = 65
+_SHOWN = 5
+_CHECKS = 9
+"""Places on an edge at which is seen whether it is made."""
+_TOGETHER = 0.01
+"""CRS units: ranges of stations no farther apart are told as one."""
+
+
+class Layout(NamedTuple):
+    """A corridor that has met the ground."""
+
+    bed: Sheet
+    skirts: list[Sheet]
+    slopes: list[Slope]
+    """Of each skirt that covers something."""
+    ends: list[Float64Array]
+    """(2, 2) each: the first and the last section, from left to right."""
+
+    def describe(self, road: Axis) -> list[str]:
+        """Tell where it was cut off because another station is nearer."""
+        unit = road.agreed.elevation_unit
+        symbol = "" if unit is None else f" {unit.symbol}"
+        notes = _describe_fold(self.bed.fold, lambda _: True, symbol)
+        for skirt, slope in zip(self.skirts, self.slopes, strict=True):
+            notes += _describe_fold(skirt.fold, slope.is_made_at, symbol, "side slopes meet those")
+        return list(dict.fromkeys(notes))
+
+
+class Layouts:
+    """What is laid out, farther and farther until side slopes meet the ground."""
+
+    def __init__(
+        self,
+        tin: TIN,
+        area: Any,
+        road: Axis,
+        design: Design,
+        tolerance: float,
+        interval: float | None,
+    ) -> None:
+        factor = road.agreed.factors[0]
+        points = tin.points if factor == 1.0 else tin.points * (1.0, 1.0, factor)
+        self.ground = (
+            tin.replace(crs=None, elevation_unit=None)
+            if factor == 1.0
+            else TIN.from_triangles(points, tin.triangles)
+        )
+        self._area, self._road, self._design = area, road, design
+        self._tolerance, self._interval = tolerance, interval
+
+    def find(self, done: Progress) -> Layout:
+        """Return the layout whose side slopes meet the ground.
+
+        Raises LinesError, PointsError and OptionError as :func:`tinsmith.corridor`.
+        """
+        far, most = self._estimate_reach()
+        for number in range(64):
+            done(1.0 - 0.6**number)
+            layout, open_ends = self._lay(min(far, max(most.values())))
+            for kind, ends in open_ends.items():
+                near = lie_on(self._area, ends, measure_tolerance(self.ground.points))
+                require_ground(ends if far >= most[kind] else ends[near], _SIGNS[kind])
+            if not any(map(len, open_ends.values())):
+                break
+            far *= 2.0
+        return layout
+
+    def _estimate_reach(self) -> tuple[float, dict[str, float]]:
+        """Return how far slopes go on ground as at their feet, and how far they can on any."""
+        stations = np.linspace(*self._road.span, _SAMPLES)
+        used = self.ground.points[self.ground.triangles, 2]
+        axis = self._road.elevations_at(stations)
+        far, most = 0.0, dict.fromkeys(_SIGNS, 0.0)
+        across = float(np.hypot(*(np.ptp(self.ground.points[:, :2], axis=0))))
+        for side in (-1, 1):
+            bed, ditch = self._design.lay(side, stations), self._design.lay_ditch(side, stations)
+            hinge = axis + bed.rises[:, -1]
+            foot = hinge + ditch.rises[:, -1]
+            far = max(far, 0.25 * float(bed.offsets[:, -1].max()))
+            places = self._road.alignment.points_at(stations, offset=side * bed.offsets[:, -1])
+            ground = self.ground.interpolate(places)
+            for kind, start in (("cut", foot), ("fill", hinge)):
+                rates = self._design.find_rates(side, stations, kind)
+                rise = np.nan_to_num((ground - start) / rates)
+                far = max(far, 2.0 * float(rise.max()))
+                extreme = used.max() if kind == "cut" else used.min()
+                slack = abs(extreme - start).max() * 0.01
+                reach = float(((extreme - start) / rates).max()) + slack / float(abs(rates).min())
+                most[kind] = max(most[kind], min(reach, across))
+        most = {kind: max(value, far) for kind, value in most.items()}
+        return far, most
+
+    def _lay(self, far: float) -> tuple[Layout, dict[str, Float64Array]]:
+        reach = Reach(self._design, far)
+        stations = self._choose_stations(reach)
+        rays = lay_rays(self._road.alignment, reach, stations, self._tolerance)
+        bed = self._build_bed(rays)
+        ends = self._find_ends(reach)
+        skirts, slopes, found = [], [], {}
+        tolerance = measure_tolerance(self.ground.points)
+        for kind, sign in _SIGNS.items():
+            skirt = self._build_skirt(rays, kind, far)
+            if skirt is None:
+                raise LinesError("The corridor has no side slopes: its axis turns too sharply.")
+            slope, open_ends = meet_ground(self.ground, skirt.tin, bed.area, -sign)
+            skirts.append(skirt)
+            slopes.append(slope)
+            import shapely
+
+            is_end = shapely.dwithin(
+                shapely.multilinestrings(ends), shapely.points(open_ends), 64.0 * tolerance
+            )
+            found[kind] = open_ends[~is_end]
+        return Layout(bed, skirts, slopes, ends), found
+
+    def _choose_stations(self, reach: Reach) -> Float64Array:
+        road = self._road
+        ends = np.union1d(np.array(road.span), self._design.changes)
+        widest = max(float(reach.measure(side, ends)[:, -1].max()) for side in (-1, 1))
+        up = road.up * road.agreed.factors[1]
+        return choose_stations(
+            road.alignment,
+            road.profile,
+            self._design,
+            span=road.span,
+            widest=widest,
+            far=reach.far,
+            tolerance=(self._tolerance, self._tolerance / up),
+            interval=self._interval,
+        )
+
+    def _find_ends(self, reach: Reach) -> list[Float64Array]:
+        found = []
+        for station in self._road.span:
+            at = np.array([station])
+            offsets = [side * float(reach.measure(side, at)[0, -1]) for side in (-1, 1)]
+            places = [self._road.alignment.points_at(at, offset=one)[0] for one in offsets]
+            found.append(np.array(places))
+        return found
+
+    def _build_bed(self, rays: Rays) -> Sheet:
+        """Return what lies between the outermost parts."""
+        axis = self._road.elevations_at(rays.stations)
+        lays = {side: self._design.lay(side, rays.stations) for side in (-1, 1)}
+        lays = {s: Lay(one.offsets, one.rises + axis[:, None]) for s, one in lays.items()}
+        names = {side: ["", *self._design.list_names(side)] for side in (-1, 1)}
+        names[1][0] = "axis"
+        bed = build_sheet(rays, Rows(names, lays), self._hold_bed, is_bed=True)
+        if bed is None or bed.area.geom_type != "Polygon" or len(bed.area.interiors):
+            raise LinesError(
+                "The corridor lies over itself: stretches of the axis that are far apart along it "
+                "are nearer to each other than the template is wide."
+            )
+        require_on_ground(self._area, bed.area, "The corridor lies off")
+        return bed
+
+    def _build_skirt(self, rays: Rays, kind: str, far: float) -> Sheet | None:
+        """Return the side slopes of cuts or fills, whether or not they are made."""
+        axis = self._road.elevations_at(rays.stations)
+        names, lays = {}, {}
+        for side in (-1, 1):
+            bed = self._design.lay(side, rays.stations)
+            first = bed.offsets[:, -1:], bed.rises[:, -1:] + axis[:, None]
+            ditch = self._design.lay_ditch(side, rays.stations)
+            own = ditch if kind == "cut" else Lay(ditch.offsets[:, :1], ditch.rises[:, :1])
+            offsets, heights = first[0] + own.offsets, first[1] + own.rises
+            end = first[0] + ditch.offsets[:, -1:] + far
+            rates = self._design.find_rates(side, rays.stations, kind)[:, None]
+            top = heights[:, -1:] + (end - offsets[:, -1:]) * rates
+            lays[side] = Lay(np.hstack([offsets, end]), np.hstack([heights, top]))
+            parts = self._design.list_names(side, ditch=True) if kind == "cut" else []
+            names[side] = ["", *parts, ""]
+        return build_sheet(rays, Rows(names, lays), self._hold_skirt, is_bed=False)
+
+    def _hold_bed(self, places: Float64Array) -> BoolArray:
+        return self._compare(places, lambda offset, hinge: offset <= hinge)
+
+    def _hold_skirt(self, places: Float64Array) -> BoolArray:
+        return self._compare(places, lambda offset, hinge: offset >= hinge)
+
+    def _compare(
+        self, places: Float64Array, test: Callable[[Float64Array, Float64Array], BoolArray]
+    ) -> BoolArray:
+        table = self._road.alignment.stations_of(places)
+        station, offset = table["station"], table["offset"]
+        low, high = self._road.span
+        known = (station >= low) & (station <= high)
+        held = np.zeros(len(places), bool)
+        for side in (-1, 1):
+            own = np.flatnonzero(known & ((offset < 0.0) == (side < 0)))
+            hinge = self._design.lay(side, station[own]).offsets[:, -1]
+            held[own] = test(np.abs(offset[own]), hinge)
+        return held
+
+
+def _describe_fold(
+    fold: Fold,
+    is_made_at: Callable[[Any], bool],
+    symbol: str,
+    what: str = "the template reaches into that",
+) -> list[str]:
+    """Say at which stations a sheet was cut off."""
+    import shapely
+
+    shares = np.linspace(0.0, 1.0, _CHECKS)
+    ranges, step = [], 0.0
+    for stations, ends, own in zip(fold.stations, fold.places, fold.steps, strict=True):
+        places = shapely.points(ends[0] + shares[:, None] * (ends[1] - ends[0]))
+        made = shares[[is_made_at(place) for place in places]]
+        if len(made):
+            found = stations[0] + made[[0, -1]] * (stations[1] - stations[0])
+            ranges.append((float(found.min()), float(found.max())))
+            step = max(step, float(own))
+    if not ranges:
+        return []
+    joined = [
+        f"{coordinate(math.floor(low * 1e3) / 1e3)} to {coordinate(math.ceil(high * 1e3) / 1e3)}"
+        for low, high in _join_ranges(ranges)
+    ]
+    listed = ", ".join(joined[:_SHOWN])
+    more = f" and {counted(len(joined) - _SHOWN, 'more range')}" if len(joined) > _SHOWN else ""
+    differ = (
+        f", the lower of elevations that differ by up to {step:.4g}{symbol}" if step > 1e-6 else ""
+    )
+    return [
+        f"At stations {listed}{more} {what} of other stations, and was cut off where both are as "
+        f"near{differ}."
+    ]
+
+
+def _join_ranges(ranges: list[tuple[float, float]]) -> list[tuple[float, float]]:
+    """Return ranges of stations in ascending order, those that meet as one."""
+    joined: list[tuple[float, float]] = []
+    for low, high in sorted(ranges):
+        if joined and low <= joined[-1][1] + _TOGETHER:
+            joined[-1] = joined[-1][0], max(joined[-1][1], high)
+        else:
+            joined.append((low, high))
+    return joined

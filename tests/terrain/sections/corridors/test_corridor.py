@@ -1,0 +1,237 @@
+"""Corridors: volumes of closed forms, sections of the template, and what is refused."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import tinsmith as ts
+
+SIZE = 400.0
+LANE = ts.Part("lane", 3.5, -0.02, turns=True)
+DITCH = (ts.Part("foreslope", 1.0, -0.4), ts.Part("bottom", 0.5))
+ROAD = ts.Template(ts.Side([LANE], cut_slope=1, fill_slope=2))
+
+
+def make_ground(height=5.0, rise=0.0, **options):
+    corners = np.array([[0.0, 0.0], [SIZE, 0.0], [SIZE, SIZE], [0.0, SIZE]])
+    return ts.triangulate(
+        np.column_stack([corners, height + rise * (corners[:, 0] - SIZE / 2)]), **options
+    )
+
+
+def make_axis(points, heights, **curves):
+    axis = ts.Alignment.from_points(points, **curves)
+    stations = np.linspace(axis.start, axis.end, len(heights))
+    rows = [ts.VerticalPoint(*one) for one in zip(stations, heights, strict=True)]
+    return replace(axis, verticals=(ts.VerticalAlignment(rows),))
+
+
+def find_volume(ground, made, name):
+    return float(ts.volume(ground, made)[name][0])
+
+
+def measure(made, axis, station, offsets):
+    """Return elevations of a surface across an axis."""
+    places = [axis.points_at([station], offset=offset)[0] for offset in offsets]
+    return made.interpolate(np.array(places))
+
+
+# ---------------------------------------------------------------- volumes
+
+
+def test_straight_fill_on_level_ground_is_a_prism():
+    ground = make_ground()
+    made = ts.corridor(ground, [[100, 200, 7], [300, 200, 7]], ROAD)
+    edge = 2.0 - 0.02 * 3.5
+    area = 2.0 * (3.5 * (2.0 + edge) / 2.0 + edge * (2.0 * edge) / 2.0)
+    # A face at each end is 0.001 wide.
+    assert find_volume(ground, made, "fill") == pytest.approx(area * 200.0, abs=0.002 * area)
+    assert find_volume(ground, made, "cut") == pytest.approx(0.0, abs=1e-6)
+    assert made.area == pytest.approx(ground.area, rel=1e-12)
+    assert ts.check(made).ok
+
+
+def test_straight_cut_with_a_ditch_is_a_prism():
+    ground = make_ground(10.0)
+    side = ts.Side([LANE], ditch=DITCH, cut_slope=1, fill_slope=2)
+    made = ts.corridor(ground, [[100, 200, 7], [300, 200, 7]], ts.Template(side))
+    depths = np.array([3.0, 3.07, 3.47, 3.47, 0.0])
+    offsets = np.array([0.0, 3.5, 4.5, 5.0, 5.0 + 3.47])
+    area = 2.0 * float(np.trapezoid(depths, offsets))
+    assert find_volume(ground, made, "cut") == pytest.approx(area * 200.0, abs=0.002 * area)
+
+
+@pytest.mark.parametrize("turn", [1, -1], ids=["left", "right"])
+def test_arc_on_level_ground_is_what_pappus_says(turn):
+    ground = make_ground()
+    left = ts.Side([ts.Part("lane", 6.0, 0.01)], cut_slope=1, fill_slope=1)
+    right = ts.Side([ts.Part("lane", 2.0, -0.05)], cut_slope=1, fill_slope=3)
+    points = [[100, 200], [200, 200], [200, 200 + turn * 100]]
+    axis = make_axis(points, [7.0, 7.0], radii=60.0)
+    begin, end = axis.tabulate()["station"][1:3].tolist()
+    made = ts.corridor(
+        ground, axis, ts.Template(left, right), start=begin, end=end, tolerance=0.0005
+    )
+    offsets = np.array([-8.06, -6.0, 0.0, 2.0, 7.7])
+    heights = np.array([0.0, 2.06, 2.0, 1.9, 0.0])
+    fine = np.linspace(offsets[0], offsets[-1], 200_001)
+    over = np.interp(fine, offsets, heights)
+    wanted = (np.pi / 2.0) * float(np.trapezoid(over * (60.0 + turn * fine), fine))
+    assert end - begin == pytest.approx(30.0 * np.pi)
+    assert find_volume(ground, made, "fill") == pytest.approx(wanted, rel=2e-4)
+
+
+def test_section_volumes_agree():
+    ground = make_ground(6.0, 0.01)
+    axis = make_axis([[100, 150], [200, 150], [280, 220]], [6.0, 7.0, 5.5], radii=50.0)
+    made = ts.corridor(ground, axis, ROAD)
+    table = ts.section_volumes(ground, made, axis, interval=10, width=60)
+    for name in ("cut", "fill"):
+        whole = find_volume(ground, made, name)
+        assert whole > 10.0
+        assert table[f"{name}_total"][-1] == pytest.approx(whole, rel=1e-4)
+
+
+# ---------------------------------------------------------------- sections
+
+
+def test_sides_differ_and_kerbs_are_vertical():
+    left = ts.Side(
+        [LANE, ts.Part("kerb", 0, rise=0.12), ts.Part("path", 2, 0.01)], cut_slope=1, fill_slope=2
+    )
+    right = ts.Side([ts.Part("lane", 4.0, -0.03)], cut_slope=1, fill_slope=1)
+    axis = make_axis([[100, 200], [300, 200]], [7.0, 8.0])
+    made = ts.corridor(make_ground(), axis, ts.Template(left, right))
+    found = measure(made, axis, 100.0, [-6.501, -5.501, -3.501, -3.5, 0.0, 4.0, 5.0])
+    hinge = 7.5 - 0.07 + 0.12 + 0.02
+    wanted = [hinge - 0.5, hinge, hinge - 0.02, 7.43, 7.5, 7.38, 6.38]
+    assert found == pytest.approx(wanted, abs=1e-9)
+    names = set(made.lines.names)
+    assert {"axis", "lane", "kerb", "path", "hinge", "daylight"} <= names
+
+
+def test_superelevation_turns_about_the_axis():
+    axis = make_axis([[100, 200], [300, 200]], [7.0, 7.0])
+    shoulder = ts.Part("shoulder", 1.0, -0.05)
+    road = ts.Template(ts.Side([LANE, shoulder], cut_slope=1, fill_slope=2))
+    table = [[50, -0.02, -0.02], [150, 0.06, -0.06]]
+    made = ts.corridor(make_ground(), axis, road, superelevation=table)
+    for station, left, right in ((20, -0.02, -0.02), (100, 0.02, -0.04), (190, 0.06, -0.06)):
+        found = measure(made, axis, float(station), [-4.5, -3.5, 0.0, 3.5, 4.5])
+        edges = 7.0 + 3.5 * left, 7.0 + 3.5 * right
+        wanted = [edges[0] - 0.05, edges[0], 7.0, edges[1], edges[1] - 0.05]
+        assert found == pytest.approx(wanted, abs=0.01)
+
+
+def test_templates_change_evenly_between_stations():
+    axis = make_axis([[100, 200], [300, 200]], [7.0, 7.0])
+    wide = ts.Template(ts.Side([ts.Part("lane", 7.5, -0.02)], cut_slope=1, fill_slope=4))
+    narrow = ts.Template(ts.Side([ts.Part("lane", 3.5, -0.02)], cut_slope=1, fill_slope=2))
+    made = ts.corridor(make_ground(), axis, {50: narrow, 150: wide})
+    for station, width, ratio in ((30.0, 3.5, 2.0), (100.0, 5.5, 3.0), (180.0, 7.5, 4.0)):
+        edge = 7.0 - 0.02 * width
+        found = measure(made, axis, station, [width, width + ratio])
+        assert found == pytest.approx([edge, edge - 1.0], abs=0.011)
+
+
+@pytest.mark.parametrize("curves", [{}, {"radii": 2.0}, {"radii": 40.0, "transitions": 10.0}])
+def test_a_bend_keeps_the_ground_beyond_daylight(curves):
+    ground = make_ground(5.0, 0.02)
+    axis = make_axis([[100, 200], [200, 200], [230, 260]], [6.0, 7.0], **curves)
+    made = ts.corridor(ground, axis, ROAD)
+    xy = np.random.default_rng(5).uniform(1, SIZE - 1, (2000, 2))
+    far = np.hypot(xy[:, 0, None] - [100, 200, 230], xy[:, 1, None] - [200, 200, 260]).min(1) > 150
+    assert far.any()
+    assert made.interpolate(xy[far]) == pytest.approx(ground.interpolate(xy[far]), abs=1e-9)
+    assert ts.check(made).ok
+    assert not any("Along the seam" in note for note in made.report.notes)
+    told = [note for note in made.report.notes if "cut off where both are as near" in note]
+    assert bool(told) == (curves.get("radii", 0.0) < 10.0)
+
+
+def test_a_line_in_space_is_an_axis():
+    made = ts.corridor(make_ground(), [[100, 200, 7], [200, 200, 7], [300, 200, 9]], ROAD)
+    assert made.interpolate([[150, 200], [250, 200], [250, 203.5]]) == pytest.approx([7, 8, 7.93])
+
+
+# ---------------------------------------------------------------- notes and refusals
+
+
+def test_notes_of_the_ground_and_of_the_axis_are_told():
+    ground = make_ground()
+    ground = ground.replace(report=replace(ground.report, notes=("A shot was left out.",)))
+    axis = replace(make_axis([[100, 200], [300, 200]], [7.0, 7.0]), notes=("An arc was bent.",))
+    notes = ts.corridor(ground, axis, ROAD).report.notes
+    assert "A shot was left out." in notes
+    assert "An arc was bent." in notes
+
+
+def test_a_profile_that_is_shorter_is_told():
+    axis = ts.Alignment.from_points([[100, 200], [300, 200]])
+    rows = [ts.VerticalPoint(50, 7.0), ts.VerticalPoint(150, 7.0)]
+    axis = replace(axis, verticals=(ts.VerticalAlignment(rows),))
+    made = ts.corridor(make_ground(), axis, ROAD)
+    assert any("built where both are" in note for note in made.report.notes)
+    assert made.interpolate([[140, 200], [200, 200], [260, 200]]) == pytest.approx([5, 7, 5])
+
+
+STRAIGHT = [[100, 200, 7], [300, 200, 7]]
+
+
+@pytest.mark.parametrize(
+    ("axis", "options", "error", "sentence"),
+    [
+        ([[100, 200], [300, 200]], {}, ts.LinesError, "no elevations"),
+        ([[100, 200, 7], [100, 200, 7]], {}, ts.LinesError, "no length"),
+        ([[100, 200, 7], [100, 200, 9], [200, 200, 9]], {}, ts.LinesError, "vertical at"),
+        ([[100, 100, 7], [200, 100, 7], [150, 200, 7], [100, 100, 7]], {}, ts.LinesError, "closes"),
+        ([[-50, 200, 7], [300, 200, 7]], {}, ts.PointsError, "lies off the ground"),
+        ([[100, 100, 90], [300, 100, 90]], {}, ts.PointsError, "does not meet the ground"),
+        (
+            [[100, 200, 7], [200, 200, 7], [200, 260, 7], [150, 260, 7], [150, 150, 7]],
+            {},
+            ts.LinesError,
+            "over itself",
+        ),
+        (STRAIGHT, {"start": 150, "end": 100}, ts.OptionError, "end"),
+        (STRAIGHT, {"start": -5}, ts.OptionError, "where elevations are designed"),
+        (STRAIGHT, {"tolerance": 0}, ts.OptionError, "tolerance"),
+        (STRAIGHT, {"interval": 1e-9}, ts.OptionError, "sections"),
+        (STRAIGHT, {"superelevation": [[0, 1]]}, ts.OptionError, "three numbers"),
+        (STRAIGHT, {"superelevation": [[9, 0, 0], [0, 0, 0]]}, ts.OptionError, "ascending"),
+    ],
+)
+def test_what_cannot_be_is_refused(axis, options, error, sentence):
+    with pytest.raises(error, match=sentence):
+        ts.corridor(make_ground(), axis, ROAD, **options)
+
+
+def test_an_alignment_without_a_profile_is_refused():
+    with pytest.raises(ts.LinesError, match="no vertical alignment"):
+        ts.corridor(make_ground(), ts.Alignment.from_points([[100, 200], [300, 200]]), ROAD)
+
+
+def test_templates_of_other_parts_are_refused():
+    other = ts.Template(ts.Side([ts.Part("path", 2.0)], cut_slope=1, fill_slope=2))
+    with pytest.raises(ts.OptionError, match="the parts of the first one"):
+        ts.corridor(make_ground(), STRAIGHT, {0: ROAD, 50: other})
+
+
+def test_a_ditch_steeper_than_the_fill_is_refused():
+    steep = ts.Side([LANE], ditch=[ts.Part("foreslope", 1, -0.6)], cut_slope=1, fill_slope=2)
+    with pytest.raises(ts.OptionError, match="at most as steep as the side slope of a fill"):
+        ts.corridor(make_ground(), STRAIGHT, ts.Template(steep))
+
+
+def test_an_axis_in_another_crs_is_refused():
+    ground = make_ground(crs="EPSG:25832")
+    axis = replace(make_axis([[100, 200], [300, 200]], [7.0, 7.0]))
+    with pytest.raises(ts.CrsError):
+        ts.corridor(
+            ground,
+            replace(
+                axis, crs=ts.triangulate([[0, 0, 0], [1, 0, 0], [0, 1, 0]], crs="EPSG:25833").crs
+            ),
+            ROAD,
+        )
