@@ -19,6 +19,7 @@ _REFUSED = {
     "ground": "does not meet the ground",
     "edge": "The corridor lies off",
     "self": "lies over itself",
+    "axis": "There is no room for the curves",
 }
 """What may be refused, and the sentences."""
 _NAMES = {-1: "left", 1: "right"}
