@@ -77,5 +77,5 @@ def corridor(
     facts.add_tin("Corridor", made, volume=volumes)
     for name in ("cut", "fill"):
         facts.add(name.capitalize(), f"{volumes[name]:,.1f} {unit}")
-    facts.note([*notes, *made.report.notes, *table.notes])
+    facts.note([*notes, *made.report.notes])
     job.finish(planned, facts)
