@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 from contextlib import ExitStack, contextmanager
 from dataclasses import replace
 from pathlib import Path
@@ -48,6 +49,7 @@ if TYPE_CHECKING:
 
 _NO_FALLBACKS: Mapping[str, Any] = MappingProxyType({})
 _SHOWN = 5
+_LOGGER = logging.getLogger("tinsmith")
 
 
 class Asked(NamedTuple):
@@ -224,7 +226,7 @@ def read_with_fallbacks(
         name = name_stream(path, known)
         found = read_stream(as_bytes(path), name, fallbacks, check_crs=check_crs, **how)
         done.end()
-        return found
+        return _log(found, name)
     asked = ask(fallbacks, **how)._replace(progress=done.stage(0.0, 1.0))
     places = path if isinstance(path, list | tuple) else [cast("str | os.PathLike[str]", path)]
     with ExitStack() as copies:
@@ -234,6 +236,15 @@ def read_with_fallbacks(
         with done.passing_on(), checking_crs(check_crs):
             found = _read_several(require_paths(places), asked)
     done.end()
+    return _log(found, str(path))
+
+
+def _log(found: Survey | TIN, name: str) -> Survey | TIN:
+    """Tell the logger what was read, and what was assumed; return it."""
+    if _LOGGER.isEnabledFor(logging.INFO):
+        _LOGGER.info("Read %s: %r", printable(name), found)
+        for note in found.notes:
+            _LOGGER.info("%s: %s", printable(name), note)
     return found
 
 

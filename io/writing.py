@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 from pathlib import Path
 from typing import IO, TYPE_CHECKING, Any, TypeVar, overload
 
@@ -27,6 +28,7 @@ if TYPE_CHECKING:
 
     Stream = TypeVar("Stream", bound=IO[Any])
 
+_LOGGER = logging.getLogger("tinsmith")
 _KINDS = {
     "TIN": Surface,
     "Survey": Survey,
@@ -130,6 +132,7 @@ def write(
         if isinstance(obj, Survey) and options.get("kind") != "points":
             warn_of_lost_lines(obj, chosen)
     done.end()
+    _LOGGER.info("Wrote %s as %s: %r", file, chosen.name, obj)
     return file
 
 

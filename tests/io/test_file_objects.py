@@ -104,3 +104,15 @@ def test_progress_ends_at_1_for_file_objects():
     told = []
     ts.write(HILL, io.BytesIO(), format="ply", progress=told.append)
     assert told[-1] == 1.0
+
+
+def test_a_logger_hears_what_is_read_and_written(tmp_path, caplog):
+    path = tmp_path / "a.csv"
+    path.write_text("number,easting,northing,elevation\n7,1,2,3\n7,4,2,3\n")
+    with caplog.at_level("INFO", logger="tinsmith"):
+        survey = ts.read(path)
+        ts.write(survey, tmp_path / "b.csv")
+    said = [one.getMessage() for one in caplog.records if one.name == "tinsmith"]
+    assert said[0] == f"Read {path}: {survey!r}"
+    assert said[1:-1] == [f"{path}: {note}" for note in survey.notes]
+    assert said[-1] == f"Wrote {tmp_path / 'b.csv'} as delimited: {survey!r}"
