@@ -15,8 +15,13 @@ VARIANTS = yaml.safe_load((ROOT / "packaging" / "conda" / "variants.yaml").read_
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text())
 
 
+NO_EXTRAS = {"laspy[lazrs]>=2.5": {"laspy>=2.5", "lazrs-python"}}
+"""conda has no extras: what they bring has a line of its own."""
+
+
 def normalize(requirements):
-    return {one.replace(" ", "") for one in requirements}
+    plain = {one.replace(" ", "") for one in requirements}
+    return {part for one in plain for part in NO_EXTRAS.get(one, {one})}
 
 
 def test_the_recipe_needs_what_the_wheel_needs():

@@ -6,7 +6,6 @@ from typing import Any
 
 from qgis.core import QgsProcessingParameterFile
 
-from ..icons import load_icon
 from ..inputs import POLYGONS, Lines, Surface
 from ..options import number, switch, text
 from .base import CommandAlgorithm, Run
@@ -87,10 +86,6 @@ class CorridorAlgorithm(CommandAlgorithm):
         number("END", "Last station", "--end", "From the start of the axis.", advanced=True),
         number("INTERVAL", "Interval of sections", "--interval", "", least=0.0, advanced=True),
     )
-
-    def icon(self) -> Any:
-        """Return that of a pad with its slopes."""
-        return load_icon("grade")
 
     def add_outputs(self) -> None:
         """Add the template, the TIN, volumes and counts for models."""
