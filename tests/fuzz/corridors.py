@@ -20,6 +20,7 @@ _REFUSED = {
     "edge": "The corridor lies off",
     "self": "lies over itself",
     "axis": "There is no room for the curves",
+    "bend": "cannot be laid out near station",
 }
 """What may be refused, and the sentences."""
 _NAMES = {-1: "left", 1: "right"}

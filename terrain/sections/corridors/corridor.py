@@ -13,6 +13,7 @@ from .axis import read_axis
 from .designs import Design
 from .layouts import Layouts
 from .patches import build_patch
+from .proof import require_as_designed
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -122,6 +123,7 @@ def corridor(
     layout = layouts.find(Progress(done.stage(0.0, 0.6)))
     most = bound / road.up
     patch = build_patch(layouts.ground, layout, road, tin, most)
+    require_as_designed(patch, layout, road, design, bound)
     reference = replace_factors(road.agreed)
     joined = join_surfaces(tin, patch, reference, area, "daylight", progress=done.stage(0.6, 1.0))
     notes = (*joined.report.notes, *road.notes, *layout.describe(road))

@@ -117,9 +117,9 @@ class _Vertices:
         self.points: Float64Array = np.column_stack([xyz[:, :2], lowest])
         self.used = np.unique(number)
         self._steps = highest - lowest
-        self._grid = np.full((len(rays.sides), int(column.max()) + 1), -1)
-        self._grid[owner[~is_cut], column[~is_cut]] = number[~is_cut]
         self._lasts = {side: rows.lays[side].offsets.shape[1] - 1 for side in (-1, 1)}
+        self._grid = np.full((len(rays.sides), max(self._lasts.values()) + 1), -1)
+        self._grid[owner[~is_cut], column[~is_cut]] = number[~is_cut]
         self._cut = np.full(len(rays.sides), -1)
         self._cut[owner[is_cut]] = number[is_cut]
         self._inner = np.full(len(rays.sides), -1)

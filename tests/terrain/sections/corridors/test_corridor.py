@@ -235,3 +235,17 @@ def test_an_axis_in_another_crs_is_refused():
             ),
             ROAD,
         )
+
+
+def test_a_turn_that_is_too_sharp_is_refused_and_a_small_one_is_told():
+    rng = np.random.default_rng(3)
+    xy = rng.uniform(-60, 160, (200, 2))
+    ground = ts.triangulate(np.column_stack([xy, rng.uniform(46, 50, 200)]))
+    parts = [ts.Part("lane", 3.5, -0.02), ts.Part("path", 1.6)]
+    template = ts.Template(ts.Side(parts, cut_slope=0.5, fill_slope=1.0))
+    turn = [[0, 0, 51.0], [50, 0, 51], [50, -20, 51]]
+    with pytest.raises(ts.LinesError, match="cannot be laid out near station 61"):
+        ts.corridor(ground, turn, template)
+    bend = [[0, 0, 51.0], [40, 0, 51], [43, -6, 51], [90, -10, 51]]
+    made = ts.corridor(ground, bend, template)
+    assert "meet those of other stations" in " ".join(made.report.notes)
