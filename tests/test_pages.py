@@ -99,6 +99,19 @@ def write_files():
         MIDDLE + np.array([[-60, -30], [0, 5], [60, 40]]), radii=9, crs=CRS
     )
     ts.write(road, "road.xml")
+    crest = np.array([[-30.0, -10.0, 325.0], [30.0, 10.0, 325.0]])
+    crest[:, :2] += MIDDLE
+    ts.write(ts.Features.of_lines(crest, [0, 2], crs=CRS), "crest.gpkg")
+    rows = [
+        "side,name,width,slope,use,ratio",
+        "both,lane,2,-0.02,,",
+        "both,,,,cut,1",
+        "both,,,,fill,1",
+    ]
+    Path("template.csv").write_text("\n".join(rows) + "\n")
+    stakes = MIDDLE + np.array([[0.0, 0.0], [5.0, 5.0]])
+    rows = [f"{101 + k},{x},{y}" for k, (x, y) in enumerate(stakes.tolist())]
+    Path("stakes.csv").write_text("\n".join(["point,easting,northing", *rows]) + "\n")
     ts.write(make_lines([[-60, 20], [60, -20]], [[0, -30], [5, 30]], name="roads"), "roads.gpkg")
     ts.write(make_lines([[-20, -10], [20, 0]], name="kerbs"), "plan.gpkg")
     ts.write(make_lines([[-20, 10], [20, 15]], name="soft"), "soft.shp")

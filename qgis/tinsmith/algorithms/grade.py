@@ -80,7 +80,7 @@ class CorridorAlgorithm(CommandAlgorithm):
         "stations where a bend is sharper than the template is wide."
     )
     surfaces = (Surface(words="Ground"),)
-    lines = (Lines("LINE", "Axis", "--axis", "A layer of one line in space.", required=True),)
+    lines = (Lines("LINE", "Axis", "", "A layer of one line in space.", required=True),)
     options = (
         number("START", "First station", "--start", "From the start of the axis.", advanced=True),
         number("END", "Last station", "--end", "From the start of the axis.", advanced=True),
