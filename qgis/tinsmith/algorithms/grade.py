@@ -7,7 +7,7 @@ from typing import Any
 from qgis.core import QgsProcessingParameterFile
 
 from ..inputs import POLYGONS, Lines, Surface
-from ..options import number, switch, text
+from ..options import describe, number, switch, text
 from .base import CommandAlgorithm, Run
 
 _RATIO = "Horizontal over vertical: 2 is 2:1."
@@ -89,7 +89,8 @@ class CorridorAlgorithm(CommandAlgorithm):
 
     def add_outputs(self) -> None:
         """Add the template, the TIN, volumes and counts for models."""
-        self.addParameter(QgsProcessingParameterFile("TEMPLATE", "Template (CSV)", extension="csv"))
+        template = QgsProcessingParameterFile("TEMPLATE", "Template (CSV)", extension="csv")
+        self.addParameter(describe(template, "A row for each part, from the axis outwards."))
         self.add_mesh_output("Corridor")
         self.add_numbers({"CUT": "Cut", "FILL": "Fill"})
         self.add_counts()
