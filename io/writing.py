@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import logging
+from contextlib import contextmanager, nullcontext
 from pathlib import Path
 from typing import IO, TYPE_CHECKING, Any, TypeVar, overload
 
@@ -22,7 +23,7 @@ from .registry.losses import warn_of_lost_lines
 
 if TYPE_CHECKING:
     import os
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterator
 
     from .registry.format import Format
 
@@ -118,34 +119,32 @@ def write(
     ...     ts.write(ts.contours(tin, interval=1.0), Path(folder, "contours.xml")).name
     'contours.xml'
     """
-    if is_file_object(path):
-        return _write_into(obj, path, format, progress=progress, **options)
-    file = as_path(path)
+    is_object = is_file_object(path)
+    if is_object and format is None:
+        allowed = "the name of a format, such as 'ply', where a file object is written"
+        raise OptionError("format", format, allowed)
+    file = Path(name_stream(path)) if is_object else as_path(path)
     chosen = find_writer(file, format, (find_kind(obj, file),))
     writer = chosen.load("write")
     require_options(chosen, "write", writer, options)
     done = Progress(progress)
     if progress is not None and takes_progress(writer):
         options["progress"] = done.stage(0.0, 1.0)
-    with done.passing_on(), naming_file(file):
-        _call_writer(chosen, writer, obj, file, options)
+    opened = _open_copy(path, file, chosen) if is_object else nullcontext(file)
+    with opened as place, done.passing_on(), naming_file(place):
+        _call_writer(chosen, writer, obj, place, options)
         if isinstance(obj, Survey) and options.get("kind") != "points":
             warn_of_lost_lines(obj, chosen)
     done.end()
     _LOGGER.info("Wrote %s as %s: %r", file, chosen.name, obj)
-    return file
+    return path if is_object else file
 
 
-def _write_into(obj: object, stream: Any, name: str | None, **how: Any) -> Any:
-    """Write a file into a file object, which it returns."""
-    if name is None:
-        allowed = "the name of a format, such as 'ply', where a file object is written"
-        raise OptionError("format", name, allowed)
-    place = Path(name_stream(stream))
-    chosen = find_writer(place, name, (find_kind(obj, place),))
-    with writing_into(stream, chosen) as path, naming_copy(path, place):
-        write(obj, path, format=chosen.name, **how)
-    return stream
+@contextmanager
+def _open_copy(stream: Any, name: Path, chosen: Format) -> Iterator[Path]:
+    """Yield a file for what a file object gets; sentences speak of its name."""
+    with writing_into(stream, chosen) as copy, naming_copy(copy, name):
+        yield copy
 
 
 def _call_writer(

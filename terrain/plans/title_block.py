@@ -97,6 +97,13 @@ def draw_title_block(
     return draw_title(canvas, layout, caption)
 
 
+def describe_cut_texts(is_cut: bool) -> tuple[str, ...]:
+    """Return the note of sheets on which a text had no room, if one had none."""
+    if not is_cut:
+        return ()
+    return ("Texts were cut, for they had no room: give shorter ones, or larger paper.",)
+
+
 def draw_border(canvas: Drawable, layout: Layout) -> None:
     """Draw the border of a sheet, and rules around the cells of the title block."""
     canvas.draw_paths([outline(layout.border)], _BORDER, "border")

@@ -81,6 +81,12 @@ def test_lists_for_instruments_have_no_header_and_as_many_decimals_as_asked():
     ]
 
 
+def test_what_is_missing_is_counted_in_every_layout():
+    for layout in ((), ("--layout", "PNEZ"), ("--layout", "ZR")):
+        words = ("--at", "at.csv", *layout, "-o", "list.csv", "--json", "-q")
+        assert json.loads(run("stakeout", "design.gpkg", *words))["missing"] == 1
+
+
 def test_points_along_an_axis_are_at_its_stations_and_offsets():
     run("stakeout", "design.gpkg", "--line", "road.xml", "--interval", 25, "--offsets=-5,5",
         "--unit", "ft", "-o", "list.csv")  # fmt: skip

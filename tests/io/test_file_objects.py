@@ -116,3 +116,9 @@ def test_a_logger_hears_what_is_read_and_written(tmp_path, caplog):
     assert said[0] == f"Read {path}: {survey!r}"
     assert said[1:-1] == [f"{path}: {note}" for note in survey.notes]
     assert said[-1] == f"Wrote {tmp_path / 'b.csv'} as delimited: {survey!r}"
+    caplog.clear()
+    with caplog.at_level("INFO", logger="tinsmith"):
+        ts.write(survey, io.BytesIO(), format="delimited")
+    assert [one.getMessage() for one in caplog.records] == [
+        f"Wrote stream as delimited: {survey!r}"
+    ]

@@ -17,7 +17,14 @@ from ..lettering import PURPOSE
 from ..papers import Paper, arrange_sheet
 from ..scales import describe_factor, find_ground_unit, measure_scale_factor
 from ..sheets import Units, describe_elevations, draw_legend, draw_scales
-from ..title_block import Caption, describe_missing_letters, draw_border, draw_title, read_words
+from ..title_block import (
+    Caption,
+    describe_cut_texts,
+    describe_missing_letters,
+    draw_border,
+    draw_title,
+    read_words,
+)
 from . import texts
 from .drawings import cut_profiles, draw_map, draw_map_legend, draw_profiles, make_map
 
@@ -92,8 +99,7 @@ class VolumeReport:
     @property
     def notes(self) -> tuple[str, ...]:
         """What was assumed or converted, and after :meth:`save` what had no room, in sentences."""
-        cut = ("Texts were cut, for they had no room: give shorter ones, or larger paper.",)
-        return (*self._notes, *(cut if self._is_cut else ()))
+        return (*self._notes, *describe_cut_texts(self._is_cut))
 
     def with_notes(self, notes: Sequence[str]) -> VolumeReport:
         """Return the same with further notes in front of its own, on its pages too.

@@ -22,7 +22,14 @@ from ..scales import (
     find_ground_unit,
     measure_scale_factor,
 )
-from ..title_block import Caption, describe_missing_letters, draw_border, draw_title, read_words
+from ..title_block import (
+    Caption,
+    describe_cut_texts,
+    describe_missing_letters,
+    draw_border,
+    draw_title,
+    read_words,
+)
 from .arrangement import Request, arrange
 from .cells import Cell
 from .dxf import name_layers, write_drawing
@@ -124,8 +131,7 @@ class SectionSheets:
     @property
     def notes(self) -> tuple[str, ...]:
         """What was chosen or assumed, and after :meth:`save` what had no room, in sentences."""
-        cut = ("Texts were cut, for they had no room: give shorter ones, or larger paper.",)
-        return (*self._notes, *(cut if self._is_cut else ()))
+        return (*self._notes, *describe_cut_texts(self._is_cut))
 
     def with_notes(self, notes: Sequence[str]) -> SectionSheets:
         """Return the same with further notes in front of its own.

@@ -28,12 +28,8 @@ class GroundCoordinates:
     def find_factor(self, places: TIN | Survey) -> CombinedFactor | None:
         """Return the factor of a surface, or of points; None if the grid is to stay.
 
-        Raises
-        ------
-        click.UsageError
-            If options do not belong together.
+        They must be fitting.
         """
-        self.require_fitting()
         if not self.to_ground:
             return None
         from ...terrain import CombinedFactor, combined_factor

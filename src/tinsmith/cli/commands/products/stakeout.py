@@ -129,7 +129,8 @@ def _make_points(table: Table | None, design: Any, how: dict[str, Any]) -> Featu
 def _list_facts(files: list[Path], table: Table) -> Facts:
     facts = Facts(inputs=[str(file) for file in files])
     facts.record(rows=list_rows(table.columns), units=name_units(table.units))
-    missing = 0 if "reason" not in table.columns else sum(x is not None for x in table["reason"])
+    numbers = [one for one in table.columns.values() if one.dtype.kind == "f"]
+    missing = sum(any(value != value for value in row) for row in zip(*numbers, strict=True))
     text = counted(len(table), "point")
     if missing:
         text += f", {missing:,} with a number missing"
