@@ -9,7 +9,7 @@ import numpy as np
 
 from ....base.checks import as_floats, as_number
 from ....base.errors import OptionError
-from .templates import Template
+from .templates import STEEPEST, STEEPNESS, Template
 
 if TYPE_CHECKING:
     from ....base.arrays import Float64Array
@@ -162,6 +162,9 @@ def _read_superelevation(given: Any) -> Float64Array:
     if table is None or table.ndim != 2 or table.shape[1] != 3 or not np.isfinite(table).all():
         allowed = "rows of three numbers: station, slope of the left and of the right side"
         raise OptionError("superelevation", given, allowed)
+    steep = np.abs(table[:, 1:]) > STEEPEST
+    if steep.any():
+        raise OptionError("slope of superelevation", float(table[:, 1:][steep][0]), STEEPNESS)
     if not (np.diff(table[:, 0]) > 0).all():
         stations = table[:, 0].tolist()
         raise OptionError("stations of superelevation", stations, "in ascending order")

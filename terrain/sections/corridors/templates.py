@@ -16,6 +16,9 @@ FACE = 0.001
 _COLUMNS = ("side", "name", "width", "slope", "rise", "ratio", "use")
 _SIDES = {"left": ("left",), "right": ("right",), "both": ("left", "right")}
 _USES = ("turns", "ditch", "cut", "fill")
+STEEPEST = 1.0
+"""Slope of a part: a larger number is a percentage that was not divided by 100."""
+STEEPNESS = "a rise over width from -1 to 1, such as 0.025 for 2.5 %"
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,7 +32,8 @@ class Part:
     width : float
         In the plane, CRS units; 0 of a vertical face.
     slope : float
-        Rise outwards over width: -0.025 falls by 2.5 % away from the axis.
+        Rise outwards over width, from -1 to 1: -0.025 falls by 2.5 % away from the axis. What is
+        steeper has a rise.
     rise : float
         By how much it rises outwards besides, in the unit of elevations, negative if it falls.
     turns : bool
@@ -66,8 +70,10 @@ class Part:
         if width < 0.0:
             raise OptionError("width", width, "0 or more")
         object.__setattr__(self, "width", width)
-        for name in ("slope", "rise"):
-            object.__setattr__(self, name, as_number(name, getattr(self, name)))
+        object.__setattr__(self, "rise", as_number("rise", self.rise))
+        object.__setattr__(self, "slope", as_number("slope", self.slope))
+        if abs(self.slope) > STEEPEST:
+            raise OptionError("slope", self.slope, STEEPNESS)
 
     @property
     def reach(self) -> float:

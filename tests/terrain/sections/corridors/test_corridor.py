@@ -249,3 +249,15 @@ def test_a_turn_that_is_too_sharp_is_refused_and_a_small_one_is_told():
     bend = [[0, 0, 51.0], [40, 0, 51], [43, -6, 51], [90, -10, 51]]
     made = ts.corridor(ground, bend, template)
     assert "meet those of other stations" in " ".join(made.report.notes)
+
+
+def test_a_slope_in_percent_is_refused():
+    wanted = r"Invalid slope -2\.5: it must be a rise over width from -1 to 1, such as 0\.025"
+    with pytest.raises(ts.OptionError, match=wanted):
+        ts.Part("lane", 3.5, -2.5)
+    ground = ts.triangulate([[0, 0, 5], [60, 0, 5], [60, 60, 5], [0, 60, 5]])
+    lane = ts.Part("lane", 3, -0.02, turns=True)
+    template = ts.Template(ts.Side([lane], cut_slope=1, fill_slope=2))
+    axis = [[10, 30, 7], [50, 30, 7]]
+    with pytest.raises(ts.OptionError, match=r"slope of superelevation 4\.0"):
+        ts.corridor(ground, axis, template, superelevation=[[0, -2.5e-2, 4.0]])
