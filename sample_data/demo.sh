@@ -7,17 +7,21 @@ samples=$(dirname "$0")
 folder=${1:-demo}
 mkdir -p "$folder"
 
-# A machine without OpenGL still gets the files; view says what it lacks.
+# Drawn beside the commands that follow. A machine without OpenGL still gets the files; view says what
+# it lacks.
 draw() {
-  tinsmith view "$folder/$1.ply" -o "$folder/$1.html" --title "$2" --quiet
+  tinsmith view "$folder/$1.ply" -o "$folder/$1.html" --title "$2" --quiet &
+  page=$!
   tinsmith view "$folder/$1.ply" -o "$folder/$1.png" --title "$2" --quiet ||
     echo "Without a picture: $1.png"
+  wait "$page"
 }
 
 echo "A survey of an invented site:"
 tinsmith build "$samples/site_survey.csv" --crs EPSG:32616 --codes \
   -o "$folder/site_survey.geojson" -o "$folder/site_survey.ply"
-draw site_survey "Site survey"
+draw site_survey "Site survey" &
+site=$!
 
 echo
 echo "Contours, a profile and volumes of a building pad designed into it:"
@@ -36,6 +40,7 @@ echo "The hills around Jacksboro, Tennessee:"
 tinsmith build "$samples/jacksboro.tif" \
   -o "$folder/jacksboro.geojson" -o "$folder/jacksboro.ply"
 draw jacksboro "Jacksboro, Tennessee"
+wait "$site"
 
 echo
 echo "Ready:"
