@@ -94,10 +94,10 @@ def measure(root: Path) -> Figures:
     for module, path in modules.items():
         text = path.read_text()
         found.lines[_find_area(module)] += text.count("\n")
-        tree = ast.parse(text)
-        _count_functions(tree, module, found)
+        nodes = list(ast.walk(ast.parse(text)))
+        _count_functions(nodes, module, found)
         is_package = module in packages
-        for target in _list_imports(tree, module, is_package, modules):
+        for target in _list_imports(nodes, module, is_package, modules):
             _count_import(module, target, packages, found)
     return found
 
@@ -114,9 +114,9 @@ def _find_area(module: str) -> str:
     return first if first in AREAS else "base"
 
 
-def _list_imports(tree, module, is_package, modules):
+def _list_imports(nodes, module, is_package, modules):
     """Yield the modules that a module imports from its own project."""
-    for node in ast.walk(tree):
+    for node in nodes:
         if not isinstance(node, ast.ImportFrom):
             continue
         if node.level:
@@ -148,13 +148,13 @@ def _count_import(module, target, packages, found):
         found.past_a_face.append((module, target))
 
 
-def _count_functions(tree, module, found):
+def _count_functions(nodes, module, found):
     used = Counter(
         getattr(node, "id", getattr(node, "attr", None))
-        for node in ast.walk(tree)
+        for node in nodes
         if isinstance(node, ast.Name | ast.Attribute)
     )
-    for node in ast.walk(tree):
+    for node in nodes:
         if not isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef):
             continue
         found.functions += 1

@@ -240,6 +240,7 @@ def test_a_missing_source_of_delaunay32_is_said_with_what_fetches_it(monkeypatch
     assert "git clone --branch v0.6.2 https://" in said
 
 
+@pytest.mark.slow
 def test_every_tool_is_either_here_or_named():
     outcome = Outcome()
     present = kernel.find_tools(kernel.ALL_TOOLS, TOOLS, "points", outcome)

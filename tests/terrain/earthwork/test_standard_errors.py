@@ -151,6 +151,7 @@ def test_feet_above_metres():
 # ---------------------------------------------------------------- draws
 
 
+@pytest.mark.slow
 def test_draws_of_independent_errors_scatter_so():
     """The volume itself, drawn again and again: its scatter is the standard error."""
     tin, other = rough(60, 7, relief=0.3), rough(50, 8, relief=0.3)
@@ -167,6 +168,7 @@ def test_draws_of_independent_errors_scatter_so():
     assert errors_of(table) == pytest.approx(scatter, rel=0.065)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("word", ["exponential", "spherical", "gaussian"])
 def test_draws_of_correlated_errors_scatter_so(word):
     tin = rough(80, 10)
