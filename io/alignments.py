@@ -9,8 +9,8 @@ from ..base.errors import OptionError, ReadError
 from ..base.notes import naming_file
 from ..base.sentences import FILE, counted
 from ..terrain import Alignment
-from .isolated.spooling import translate_system_errors
-from .registry.lookup import find_format
+from .isolated import translate_system_errors
+from .registry import find_format
 
 if TYPE_CHECKING:
     import os
@@ -30,7 +30,7 @@ def read_alignment(
     unit: UnitLike | None = None,
     layer: str | None = None,
 ) -> Alignment:
-    """Read an alignment: of LandXML, the axis of a DXF drawing, or a polyline of a vector file.
+    """Read an alignment: of LandXML, the axis of a DXF drawing, or a polyline of another file.
 
     Parameters
     ----------
@@ -72,7 +72,8 @@ def read_alignment(
     cubic and sineHalfWave are read, with station equations and vertical alignments (parabolas,
     unsymmetrical ones, and arcs). Elements begin and end where the file puts them; their lengths,
     radii, centres and tangents have to agree. Arcs of DXF (ARC, and bulges of LWPOLYLINE and
-    POLYLINE) are arcs; splines and ellipses become chords within 0.0001 units.
+    POLYLINE) are arcs; splines and ellipses become chords within 0.0001 units. Polylines are those
+    of vector files; the rows of a text table are the vertices of one, in their order.
 
     Examples
     --------

@@ -15,7 +15,7 @@ from .delimited.names import parse_name
 from .delimited.query_points import QueryPoints, read_query_points
 from .door import names_its_file
 from .reading import read
-from .registry.lookup import known_formats, list_claims
+from .registry import known_formats, list_claims
 from .vector.geometries import read_geometries
 from .vector.survey_lines import split_layer
 

@@ -24,20 +24,19 @@ from ..base.plug_ins import describe_failure, warn_of_plug_in
 from ..base.progress import Progress
 from ..base.sentences import FILE, counted, inflect, printable
 from ..tin import TIN, Survey
-from .isolated.archives import unpack, unpack_member
-from .isolated.file_objects import as_bytes, is_file_object, name_stream
-from .isolated.spooling import (
+from .isolated import (
     describe_system_error,
     open_ordinary_file,
     require_local,
     spool,
     translate_system_errors,
 )
+from .isolated.archives import unpack, unpack_member
+from .isolated.file_objects import as_bytes, is_file_object, name_stream
 from .lidar.signatures import is_virtual_cloud, list_named_files
 from .lidar.signatures import list_tiles as list_lidar_tiles
 from .raster.virtual import is_virtual
-from .registry import lookup, signatures
-from .registry.format import Format, require_options, takes_progress
+from .registry import Format, lookup, require_options, signatures, takes_progress
 from .reprojection import checking_crs
 
 if TYPE_CHECKING:

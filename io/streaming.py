@@ -17,8 +17,8 @@ from ..base.errors import OptionError, ReadError
 from ..base.notes import naming_file
 from ..base.sentences import FILE
 from ..tin import Bounds
+from .isolated import open_ordinary_file
 from .isolated.archives import unpack
-from .isolated.spooling import open_ordinary_file
 from .reading import (
     ask,
     blaming,

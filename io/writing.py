@@ -17,15 +17,14 @@ from ..base.results import Features, Raster, Table
 from ..terrain import Alignment
 from ..tin import Surface, Survey
 from .isolated.file_objects import is_file_object, name_stream, writing_into
-from .registry.format import require_options, takes_progress
-from .registry.lookup import find_writer
+from .registry import find_writer, require_options, takes_progress
 from .registry.losses import warn_of_lost_lines
 
 if TYPE_CHECKING:
     import os
     from collections.abc import Callable, Iterator
 
-    from .registry.format import Format
+    from .registry import Format
 
     Stream = TypeVar("Stream", bound=IO[Any])
 

@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from ..registry.format import SURFACES, Format
+from ..registry import SURFACES, Format
 from . import signatures
 
 

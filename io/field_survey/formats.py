@@ -3,7 +3,7 @@
 import re
 from collections.abc import Callable
 
-from ..registry.format import Format
+from ..registry import Format
 
 _GSI = re.compile(
     rb"(?:\xef\xbb\xbf)?\s*(?:\*?(?:11|41)[\d.]{4}[+-][^\s,;]{8}(?:[^\s,;]{8})?"

@@ -14,7 +14,7 @@ from ...base.errors import FormatError, OptionError
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from ..registry.format import Format
+    from ..registry import Format
 
 _CHUNK = 1 << 20
 _NAMELESS = "stream"

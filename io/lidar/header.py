@@ -17,7 +17,7 @@ import numpy as np
 from ...base.errors import ReadError
 from ...base.notes import naming_file
 from ...base.sentences import FILE, coordinate, counted, inflect
-from ..isolated.spooling import translate_system_errors
+from ..isolated import translate_system_errors
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -8,7 +8,7 @@ from urllib.parse import unquote
 
 from ...base.errors import ReadError
 from ...base.sentences import FILE
-from ..isolated.spooling import require_local, translate_system_errors
+from ..isolated import require_local, translate_system_errors
 
 if TYPE_CHECKING:
     from pathlib import Path

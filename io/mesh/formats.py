@@ -2,8 +2,7 @@
 
 from typing import Any
 
-from ..registry import signatures
-from ..registry.format import SURFACES, Format, Loss
+from ..registry import SURFACES, Format, Loss, signatures
 from .signatures import (
     TIN_FILES,
     is_2dm,

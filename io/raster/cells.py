@@ -11,7 +11,7 @@ from ...base.atomic import as_path
 from ...base.crs import CRS
 from ...terrain.gridding.grids import Cells, to_grid
 from ..door import names_its_file
-from ..isolated.spooling import open_ordinary_file, require_local, require_readable
+from ..isolated import open_ordinary_file, require_local, require_readable
 from .dem import read_georeference
 
 if TYPE_CHECKING:

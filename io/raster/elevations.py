@@ -15,7 +15,7 @@ from ...base.sentences import FILE
 from ...terrain.gridding.grids import as_parts, to_grid
 from ...tin.screening.nodata import parse_nodata
 from ..door import names_its_file
-from ..isolated.spooling import is_pipe, require_local, require_readable
+from ..isolated import is_pipe, require_local, require_readable
 from ..reprojection import place
 from .dem import choose_elevations, find_elevation_unit, find_middle
 from .header import Header, read_header, stream_strips

@@ -15,8 +15,7 @@ from ...base.errors import OptionError, ReadError
 from ...base.notes import warn
 from ...base.sentences import FILE
 from ...terrain.viewer.ortho import Ortho
-from ..isolated import Limits, choose_limits, run_isolated
-from ..isolated.spooling import require_local
+from ..isolated import Limits, choose_limits, require_local, run_isolated
 from ..reprojection.transformation import reproject
 
 if TYPE_CHECKING:

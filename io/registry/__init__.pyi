@@ -14,6 +14,15 @@ from .chunks import make_source_header as make_source_header
 from .chunks import yield_survey as yield_survey
 from .format import SURFACES as SURFACES
 from .format import Format as Format
+from .format import Loss as Loss
+from .format import require_options as require_options
+from .format import takes_progress as takes_progress
+from .lookup import choose_format as choose_format
+from .lookup import find_format as find_format
+from .lookup import find_formats as find_formats
 from .lookup import find_writer as find_writer
+from .lookup import find_writers as find_writers
+from .lookup import known_formats as known_formats
+from .lookup import list_claims as list_claims
 from .lookup import list_writers as list_writers
 from .options import taking as taking

@@ -1,6 +1,6 @@
 """The formats of tables."""
 
-from ..registry.format import Format
+from ..registry import Format
 
 
 def _make(

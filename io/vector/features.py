@@ -23,8 +23,13 @@ from ...tin import TIN
 from ..cad.dxf.model_space import ModelSpace, read_model_space
 from ..cad.dxf.names import ELEVATION_PROPERTY, UNKNOWN
 from ..cad.signatures import is_dxf, is_landxml
-from ..isolated import choose_limits, run_isolated
-from ..isolated.spooling import open_ordinary_file, require_local, translate_system_errors
+from ..isolated import (
+    choose_limits,
+    open_ordinary_file,
+    require_local,
+    run_isolated,
+    translate_system_errors,
+)
 from ..registry.signatures import HEAD_BYTES, find_reference_kind
 from .layers import Layer, name_apart, name_columns
 from .signatures import is_parquet

@@ -16,6 +16,7 @@ from ...base.sentences import FILE, counted, inflect
 from ..reprojection.contradictions import checking_crs
 from .features import read_features
 from .parts import Wanted, crs_notes, move_to_crs
+from .point_tables import is_point_table, read_point_table
 
 if TYPE_CHECKING:
     import os
@@ -42,6 +43,7 @@ def read_geometries(
     crs: CrsLike | None = None,
     layer: str | None = None,
     check_crs: bool = True,
+    table: str | None = None,
 ) -> Features:
     """Read points, lines or polygons of one kind; elevations are left aside.
 
@@ -54,6 +56,8 @@ def read_geometries(
         Needed if several layers have geometry.
     check_crs : bool
         Refuse coordinates that contradict their CRS; False takes them as they are, with a note.
+    table : {"lines", "polygons"}, optional
+        What the rows of a text table of points make; without it such tables are refused.
 
     Returns
     -------
@@ -73,8 +77,11 @@ def read_geometries(
     file = as_path(path)
     with naming_file(file), checking_crs(check_crs):
         shapely = optional.load("shapely")
-        read = read_features(file, layer=layer)
         wanted = Wanted(CRS.of(crs))
+        if layer is None and is_point_table(file):
+            read = read_point_table(file, wanted, drape=True, kind=_require_kind(table))
+        else:
+            read = read_features(file, layer=layer)
         shapes = shapely.orient_polygons(shapely.force_2d(read.geometries))
         kind = _find_kind(shapes, read)
         columns = read.columns
@@ -101,6 +108,15 @@ def read_geometries(
             crs=read.crs if wanted.crs is None else wanted.crs,
             notes=notes,
         )
+
+
+def _require_kind(table: str | None) -> str:
+    if table is None:
+        raise ReadError(
+            f"{FILE} is a table of points, which may be places or vertices of a line: a vector file"
+            " says which; `tinsmith interpolate` takes a table of places."
+        )
+    return table
 
 
 def _find_kind(shapes: ObjectArray, read: Layer) -> Any:

@@ -1,7 +1,8 @@
 """Lines, rings and water of vector files, in the CRS of the points they belong to.
 
 Whatever GDAL reads will do: GeoPackage, Shapefile, GeoJSON, FlatGeobuf, DXF ... Geometry with
-heights keeps them; without, it is draped on the surface.
+heights keeps them; without, it is draped on the surface. A text table of points is one line, or one
+ring, in the order of its rows.
 """
 
 from __future__ import annotations
@@ -25,6 +26,7 @@ from .elevations import find_named_unit, list_elevation_columns
 from .features import read_features
 from .layers import Layer
 from .parts import Part, Wanted, find_elevation_factor, split_into_parts
+from .point_tables import is_point_table, read_point_table
 
 if TYPE_CHECKING:
     import os
@@ -78,7 +80,10 @@ def _reading(
     """Yield the lines of a file, of which errors speak."""
     file, wanted = as_path(path), Wanted(CRS.of(crs), Unit.of(target_unit), Unit.of(elevation_unit))
     with naming_file(file), checking_crs(check_crs):
-        features = read_features(file, layer=layer, where=where, lines_only=True)
+        if layer is None and where is None and is_point_table(file):
+            features = read_point_table(file, wanted, drape=drape)
+        else:
+            features = read_features(file, layer=layer, where=where, lines_only=True)
         parts = split_into_parts(features, wanted, drape=drape, notes=notes)
         yield _Lines(features, parts, wanted)
 
@@ -91,7 +96,8 @@ def read_lines(
 ) -> list[Breakline]:
     """Read breaklines.
 
-    Lines of several parts become several breaklines; the rings of polygons become closed ones.
+    Lines of several parts become several breaklines; the rings of polygons become closed ones. A
+    text table of points is one line, in the order of its rows.
     The columns ``kind`` (hard, soft), ``priority`` and ``name`` are honoured where they exist.
 
     Parameters
@@ -184,11 +190,11 @@ def read_plain_lines(
     with _reading(path, crs=crs, layer=layer, drape=True, notes=notes) as (features, parts, wanted):
         names = _find_texts(features, "name")
         lines = [Breakline(part.coords[:, :2], name=names[part.row]) for part in parts]
-        return lines, wanted.crs or features.crs, [*features.notes, *notes]
+        return lines, wanted.crs or features.crs, notes
 
 
 def read_rings(path: str | os.PathLike[str], **options: Unpack[LineOptions]) -> list[Float64Array]:
-    """Read rings: polygons, all their rings, and closed lines.
+    """Read rings: polygons, all their rings, and closed lines; a text table is one ring.
 
     Parameters
     ----------
@@ -321,7 +327,7 @@ def read_water(
 
 
 def _require_ring(part: Part, features: Layer) -> Float64Array:
-    if not part.is_closed:
+    if not part.is_closed and not is_point_table(features.path):
         raise ReadError(
             f"{features.label(part.row)} is an open line: a polygon or a closed line is needed."
         )

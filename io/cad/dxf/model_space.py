@@ -11,8 +11,7 @@ from ....base.checks import as_length
 from ....base.crs import CRS
 from ....base.errors import CrsError, OptionError, ReadError
 from ....base.sentences import FILE, counted
-from ...isolated import Limits, choose_limits, run_isolated
-from ...isolated.spooling import translate_system_errors
+from ...isolated import Limits, choose_limits, run_isolated, translate_system_errors
 from ..reference import Stated
 from .names import CRS_PROPERTY, ELEVATION_PROPERTY, UNIT_OF_CODE, UNKNOWN
 

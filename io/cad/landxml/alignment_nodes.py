@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from ....base.sentences import shown
-from ...isolated.spooling import translate_system_errors
+from ...isolated import translate_system_errors
 from .numbers import fault, parse_words
 from .parser import CHUNK, Parser
 

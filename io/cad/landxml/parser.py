@@ -15,7 +15,7 @@ import numpy as np
 
 from ....base.errors import ReadError
 from ....base.sentences import FILE, counted
-from ...isolated.spooling import translate_system_errors
+from ...isolated import translate_system_errors
 from .content import Content, Line, Surface
 from .numbers import fault, parse_list, parse_rows, parse_words
 

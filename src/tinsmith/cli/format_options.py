@@ -130,7 +130,7 @@ def _find_formats(arguments: Sequence[str], way: str) -> list[Format]:
     """Return the formats that a command's arguments name, by suffixes or their names."""
     from ..base.errors import FormatError
     from ..io import known_formats
-    from ..io.registry.lookup import find_formats, list_claims
+    from ..io.registry import find_formats, list_claims
 
     flag = "--format" if way == "read" else "--output-format"
     named, paths = [], []

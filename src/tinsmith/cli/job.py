@@ -208,7 +208,7 @@ class Job:
     def read_cells(self, path: Path) -> Raster | None:
         """Return the raster of a file; None if its cells are to be points, or it is no raster."""
         from ..base.errors import OptionError, ReadError
-        from ..io.registry.lookup import choose_format
+        from ..io.registry import choose_format
 
         given = self.reading.given
         chosen = None if "format" in given else choose_format(path, "read")
@@ -297,15 +297,21 @@ class Job:
         """Return the features of a vector file, ``FILE:LAYER``, in the CRS of a TIN.
 
         Where "points" are asked for nothing else is taken, where "lines" are no points, and of
-        polygons the rings; ``purpose`` ends the refusal.
+        polygons the rings; ``purpose`` ends the refusal. A text table holds points, or the vertices
+        of one line or polygon, as it is asked.
         """
+        from ..io.places import read_places
         from ..io.vector.geometries import read_geometries
+        from ..io.vector.point_tables import is_point_table
         from ..io.vector.survey_lines import split_layer
         from ..terrain import Features
 
         path, layer = split_layer(given)
-        found = read_geometries(path, crs=tin.crs, layer=layer)
-        if kind and (found.kind == "points") != (kind == "points"):
+        if kind == "points" and layer is None and is_point_table(path):
+            return read_places(path, crs=tin.crs)
+        table = kind if kind in ("lines", "polygons") else None
+        found = read_geometries(path, crs=tin.crs, layer=layer, table=table)
+        if kind in ("points", "lines") and (found.kind == "points") != (kind == "points"):
             raise Failure(f"'{given}' has {found.kind}: {purpose or 'points are needed'}.")
         if kind != "lines":
             return found

@@ -201,7 +201,7 @@ def _compare_paths(
 
 def _find_kind(path: Path, writing: Writing, kinds: Sequence[str]) -> str:
     """Return what a suffix, or a format that is named, is meant for."""
-    from ..io.registry.lookup import list_writers
+    from ..io.registry import list_writers
     from ..terrain.drawing import PICTURE_SUFFIXES
 
     name = writing.output_format
@@ -229,7 +229,7 @@ def list_document_suffixes(kind: str) -> Sequence[str]:
 def require_format(flag: str, name: str | None) -> None:
     """Refuse a name that no format has: that is wrong usage, whatever the data."""
     from ..base.errors import FormatError
-    from ..io.registry.lookup import find_format
+    from ..io.registry import find_format
 
     try:
         if name is not None:
@@ -240,7 +240,7 @@ def require_format(flag: str, name: str | None) -> None:
 
 def _choose_formats(path: Path, name: str | None, kinds: Sequence[str]) -> dict[str, Format]:
     from ..base.errors import FormatError
-    from ..io.registry.lookup import find_writers, known_formats, list_claims
+    from ..io.registry import find_writers, known_formats, list_claims
 
     require_format("--output-format", name)
     if name is None and path == STANDARD:

@@ -44,7 +44,7 @@ def make_title(path: Path) -> str:
 
 def split_output(path: Path) -> tuple[Path, str | None]:
     """Split the name of a layer off a file to write (``site.gpkg:contours``), if there is one."""
-    from ..io.registry.lookup import known_formats, list_claims
+    from ..io.registry import known_formats, list_claims
 
     before, colon, layer = str(path).rpartition(":")
     if not (colon and layer) or {"/", os.sep} & {*layer} or path.exists():

@@ -35,7 +35,7 @@ _OF_SHEETS = ("scale", "paper", "orientation", "title", "date", "ground_unit", "
     "Table (.csv, .json), diagram of mass haul (.png) or drawn sections (.pdf, .svg, .dxf) to "
     "write."
 )
-@axis_options("LandXML, DXF or vector file of the axis.")
+@axis_options("LandXML, DXF, vector file or table of the axis.")
 @product_options(
     "terrain.sections.quantities.section_volumes",
     "interval width left right start shrink_factor swell_factor",
@@ -55,7 +55,8 @@ def sections(ground: Path, design: Path, line_file: Path | None, job: Job, **ask
 
     Each section has its areas; from one to the next there are the volumes between both surfaces,
     and those of the mean areas and of Simpson's rule, which contracts measure by; then the ordinate
-    of mass haul. The axis is an alignment of LandXML, a DXF drawing, or the line of a vector file.
+    of mass haul. The axis is an alignment of LandXML, a DXF drawing, the line of a vector file, or
+    the rows of a table.
 
     Example:
       tinsmith sections ground.csv design.csv --line road.xml --interval 20 --width 30

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 @output_option("List (.csv, .json) or points (.dxf, .gpkg, .geojson, ...) to write.")
 @file_option("--at", "File of the points to set out; a CSV file names its columns.", name="places")
 @file_option("--ground", "Ground as it is, for cut and fill: a TIN, or points.")
-@axis_options("LandXML, DXF or vector file of an axis: for stations and offsets.")
+@axis_options("LandXML, DXF, vector file or table of an axis: for stations and offsets.")
 @product_options(
     "terrain.sections.staking.lists.stakeout",
     "stations interval layout unit",

@@ -90,7 +90,7 @@ def volume(files: tuple[Path, ...], regions: Path | None, job: Job, **asked: Any
         _measure_tiles(cloud, planned, files, {"regions": regions, "base": asked["base"]}, job)
         return
     surfaces = job.read_tins(files)
-    chosen = None if regions is None else job.read_features(regions, surfaces[0])
+    chosen = None if regions is None else job.read_features(regions, surfaces[0], "polygons")
     base = asked["base"] if len(surfaces) == 1 else None
     report = None
     how = {"base": base, "regions": chosen, **errors}
@@ -155,7 +155,9 @@ def _measure_tiles(
     cloud: TiledPoints, planned: Products, files: Sequence[Path], asked: dict[str, Any], job: Job
 ) -> None:
     """Write the volumes of tiles to a level or a design."""
-    chosen = None if asked["regions"] is None else job.read_features(asked["regions"], cloud)
+    chosen = (
+        None if asked["regions"] is None else job.read_features(asked["regions"], cloud, "polygons")
+    )
     rows: list[Row] = [("Ground", describe_points(cloud))]
     other: Any = None
     if len(files) == 2:

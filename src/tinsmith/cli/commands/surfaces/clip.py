@@ -31,7 +31,7 @@ def clip(file: Path, by: Path, outside: bool, job: Job) -> None:
 
     planned = job.plan(job.list_inputs(file, more=name_features(by, "the file of --by")), "TIN")
     tin = job.read_tin(file)
-    polygons = job.read_features(by, tin)
+    polygons = job.read_features(by, tin, "polygons")
     with job.step("Clipping") as progress:
         part = clip_tin(tin, polygons, keep="outside" if outside else "inside", progress=progress)
     planned.write("TIN", part)

@@ -38,8 +38,8 @@ def corridor(
     r"""Carry the cross section in TEMPLATE along AXIS, with side slopes to the TIN in GROUND.
 
     AXIS is LandXML with an alignment and its vertical alignment, or a vector file of one line in
-    space, whose elevations are the profile. TEMPLATE is a CSV file with a row for each part, from
-    the axis outwards. The summary gives cut and fill.
+    space, or a table of its vertices, whose elevations are the profile. TEMPLATE is a CSV file with
+    a row for each part, from the axis outwards. The summary gives cut and fill.
 
     A table:
       side,name,width,slope,use,ratio

@@ -111,7 +111,7 @@ def _take_back(tin: TIN, count: int, file: Path) -> None:
 
 
 def _read_script(path: Path) -> list[dict[str, Any]]:
-    from ....io.isolated.spooling import open_ordinary_file, translate_system_errors
+    from ....io.isolated import open_ordinary_file, translate_system_errors
 
     wanted = 'a list of edits is needed, such as [{"op": "remove", "vertices": [3]}]'
     try:

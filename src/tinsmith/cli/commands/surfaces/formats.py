@@ -56,7 +56,7 @@ def _choose(names: Sequence[str]) -> tuple[Format, ...]:
     """Return the formats that have one of the names or suffixes."""
     from ....base.errors import FormatError
     from ....base.sentences import suggest
-    from ....io.registry.lookup import find_formats
+    from ....io.registry import find_formats
 
     found: list[Format] = []
     for name in names:
