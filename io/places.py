@@ -11,8 +11,7 @@ from ..base.errors import CrsError, ReadError
 from ..base.results import Features
 from ..base.sentences import FILE
 from ..tin import Survey
-from .delimited.names import parse_name
-from .delimited.query_points import QueryPoints, read_query_points
+from .delimited import QueryPoints, parse_name, read_query_points
 from .door import names_its_file
 from .reading import read
 from .registry import known_formats, list_claims

@@ -25,14 +25,17 @@ from ..base.progress import Progress
 from ..base.sentences import FILE, counted, inflect, printable
 from ..tin import TIN, Survey
 from .isolated import (
+    as_bytes,
     describe_system_error,
+    is_file_object,
+    name_stream,
     open_ordinary_file,
     require_local,
     spool,
     translate_system_errors,
+    unpack,
+    unpack_member,
 )
-from .isolated.archives import unpack, unpack_member
-from .isolated.file_objects import as_bytes, is_file_object, name_stream
 from .lidar.signatures import is_virtual_cloud, list_named_files
 from .lidar.signatures import list_tiles as list_lidar_tiles
 from .raster.virtual import is_virtual
@@ -250,7 +253,7 @@ def _log(found: Survey | TIN, name: str) -> Survey | TIN:
 @contextmanager
 def _localise(place: str | os.PathLike[str]) -> Iterator[str | os.PathLike[str]]:
     """Yield a copy of what an address holds; anything else as it is."""
-    from .isolated.downloads import download, is_web_address  # HTTP costs time to load
+    from .isolated import download, is_web_address  # HTTP costs time to load
 
     if not (isinstance(place, str | Path) and is_web_address(place)):
         yield place
@@ -384,7 +387,7 @@ def join_files(found: Sequence[Survey | TIN], paths: Sequence[Path]) -> Survey:
                 path=path,
             )
         surveys.append(one)
-    from .reprojection.joining import join_surveys
+    from .reprojection import join_surveys
 
     return join_surveys(surveys, _name_apart(paths))
 
@@ -729,7 +732,7 @@ def _recognises(one: Format, sniff: Callable[[Any], bool] | None, content: objec
 
 def _is_table(head: bytes) -> bool:
     """Whether the head reads as delimited rows of numbers."""
-    from .delimited.marks import looks_like_table
+    from .delimited import looks_like_table
 
     return looks_like_table(head)
 

@@ -17,8 +17,7 @@ from ..base.errors import OptionError, ReadError
 from ..base.notes import naming_file
 from ..base.sentences import FILE
 from ..tin import Bounds
-from .isolated import open_ordinary_file
-from .isolated.archives import unpack
+from .isolated import open_ordinary_file, unpack
 from .reading import (
     ask,
     blaming,

@@ -16,9 +16,8 @@ from ..base.progress import Progress
 from ..base.results import Features, Raster, Table
 from ..terrain import Alignment
 from ..tin import Surface, Survey
-from .isolated.file_objects import is_file_object, name_stream, writing_into
-from .registry import find_writer, require_options, takes_progress
-from .registry.losses import warn_of_lost_lines
+from .isolated import is_file_object, name_stream, writing_into
+from .registry import find_writer, require_options, takes_progress, warn_of_lost_lines
 
 if TYPE_CHECKING:
     import os

@@ -6,9 +6,7 @@ from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any
 
 from ..base.progress import Progress
-from .building import BuildOptions, gather_inputs
-from .building.assembly import assemble
-from .building.survey import Survey
+from .building import BuildOptions, Survey, assemble, gather_inputs
 from .surface import TIN
 
 if TYPE_CHECKING:
@@ -17,7 +15,7 @@ if TYPE_CHECKING:
     from ..base.crs import CrsLike, UnitLike
     from ..base.policies import CrossingPolicy, DuplicatePolicy, TrimPolicy
     from ..base.types import GeometriesLike, PointsLike
-    from .constraints.breaklines import Breakline, Water
+    from .constraints import Breakline, Water
 
 
 def triangulate(

@@ -16,19 +16,35 @@ from ..base.ranges import describe_span, require_degrees
 from ..base.sentences import counted
 from ..base.types import seal
 from . import topology
-from .building import Version
-from .building.assembly import assemble
-from .building.attributes import Attributes, as_columns, as_row_attributes, join_columns
-from .building.moving import move_inputs, move_points, require_move
-from .building.reference import require_crs
-from .constraints.breaklines import Lines
+from .building import (
+    Attributes,
+    Version,
+    as_columns,
+    as_row_attributes,
+    assemble,
+    join_columns,
+    move_inputs,
+    move_points,
+    require_crs,
+    require_move,
+)
+from .constraints import Lines
 from .editing.editable import Editable
 from .editing.session import Origin
 from .report import LEFT_OUT, Report
 from .triangulation import Triangulation
-from .validation.points import as_pairs, as_places, as_points, as_xy
-from .validation.triangles import as_flags, as_triangles, turn_counter_clockwise
-from .validation.vertices import as_rows, as_vertex, as_vertex_pairs
+from .validation import (
+    as_flags,
+    as_pairs,
+    as_places,
+    as_points,
+    as_rows,
+    as_triangles,
+    as_vertex,
+    as_vertex_pairs,
+    as_xy,
+    turn_counter_clockwise,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -38,7 +54,7 @@ if TYPE_CHECKING:
     from ..base.arrays import AnyArray, BoolArray, Float64Array, Int32Array
     from ..base.crs import CrsLike, UnitLike
     from ..base.types import Bounds, PointsLike
-    from .building.inputs import BuildInputs
+    from .building import BuildInputs
     from .report import Edit
     from .voronoi.diagram import Voronoi
 

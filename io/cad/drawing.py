@@ -14,13 +14,11 @@ from ...base.notes import warn
 from ...base.policies import BreaklineKind
 from ...base.sentences import FILE, counted
 from ...tin import Breakline, Surface, Survey, Water
-from ...tin.constraints.breaklines import as_ring
-from ...tin.constraints.constraint_set import as_sequence
-from ...tin.constraints.polygons import gather_rings_of_regions
-from ...tin.screening.nodata import describe_elevations
+from ...tin.constraints import as_ring, as_sequence, gather_rings_of_regions
+from ...tin.screening import describe_elevations
 from ...tin.topology import find_offsets
 from ..mesh.common import Reference, require_own_crs
-from ..reprojection.placement import Placed, place
+from ..reprojection import Placed, place
 from .surfaces import Line, Mesh, make_tin_with_lines, merge_equal_points
 
 if TYPE_CHECKING:

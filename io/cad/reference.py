@@ -14,8 +14,8 @@ import numpy as np
 from ...base.crs import CRS, Unit
 from ...base.errors import CrsError, OptionError, ReadError
 from ...base.sentences import FILE
-from ...tin.screening.area_of_use import AreaOfUse
-from ..reprojection.placement import settle_unit
+from ...tin.screening import AreaOfUse
+from ..reprojection import settle_unit
 
 if TYPE_CHECKING:
     from ...base.arrays import Float64Array

@@ -9,7 +9,7 @@ import numpy as np
 from ...base.policies import LineKind
 from ...base.sentences import counted
 from ...tin import TIN
-from ...tin.constraints.breaklines import Lines
+from ...tin.constraints import Lines
 from ...tin.topology import directed_edges, edge_keys, find_offsets, mark_corners
 from ..mesh.common import add_notes, join_places, make_tin
 

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
     from ...base.arrays import AnyArray, Float64Array
     from ...base.crs import CRS
-    from ...tin.screening.area_of_use import AreaOfUse
+    from ...tin.screening import AreaOfUse
     from .columns import Columns
     from .headings import AxesLine
 

@@ -16,14 +16,14 @@ import numpy as np
 from ...base.crs import Unit
 from ...base.errors import ReadError
 from ...base.sentences import counted, inflect, shown
-from ...tin.screening.nodata import find_suspect_elevations
+from ...tin.screening import find_suspect_elevations
 from .columns import Columns, find_columns_by_word
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
 
     from ...base.arrays import Float64Array
-    from ...tin.screening.area_of_use import AreaOfUse
+    from ...tin.screening import AreaOfUse
     from .parsing import Column
 
 _FOOT = 0.3048

@@ -12,7 +12,7 @@ import numpy as np
 from ...base.crs import METRE, Unit
 from ...base.errors import CrsError, OptionError, ReadError
 from ...base.sentences import FILE, counted, height
-from ...tin.screening.nodata import describe_elevations
+from ...tin.screening import describe_elevations
 from .axes import are_named_plainly
 from .cells import is_number, split_line
 from .columns import COORDINATES, find_unit_word, list_names, names_coordinates
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
     from ...base.arrays import AnyArray, Float64Array, Int64Array
     from ...base.crs import CRS
-    from ...tin.screening.area_of_use import AreaOfUse
+    from ...tin.screening import AreaOfUse
     from .columns import Columns
     from .layout import Layout
     from .lines import TextLines

@@ -11,7 +11,7 @@ import numpy as np
 
 from ...base.errors import OptionError, ReadError
 from ...base.sentences import FILE, counted
-from ...tin.screening.area_of_use import AreaOfUse
+from ...tin.screening import AreaOfUse
 from ..door import names_its_file
 from .axes import describe_turn, is_northing, require_one_hemisphere
 from .columns import describe_doubts

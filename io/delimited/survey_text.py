@@ -11,8 +11,7 @@ from ...base.errors import WriteError
 from ...base.progress import Progress
 from ...base.sentences import FILE
 from ...tin import TIN, Survey
-from ..registry import PointChunk, StreamHead, gather, taking
-from ..registry.losses import keep_on_one_line
+from ..registry import PointChunk, StreamHead, gather, keep_on_one_line, taking
 from .columns import find_unit_word
 from .lines import BLOCK_BYTES, COMMENT_PREFIXES, iterate_lines
 from .table_reader import Asked, TableReader

@@ -15,8 +15,7 @@ import numpy as np
 from ...base.crs import CRS, Unit
 from ...base.errors import ReadError
 from ...base.sentences import counted
-from ...tin.screening.area_of_use import AreaOfUse
-from ...tin.screening.nodata import parse_nodata
+from ...tin.screening import AreaOfUse, parse_nodata
 from ..registry import StreamEnd
 from ..reprojection import Placing, is_geographic, settle_unit
 from .axes import require_no_geocentric, require_one_hemisphere, settle_axes

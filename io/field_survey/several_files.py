@@ -10,7 +10,7 @@ import numpy as np
 
 from ...base.errors import LinesError
 from ...base.types import RowSources
-from ..reprojection.joining import SOURCE_FILE
+from ..reprojection import SOURCE_FILE
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

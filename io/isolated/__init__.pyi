@@ -1,8 +1,21 @@
 # Public names, each with the module that has it: type checkers and `_lazy` read them here.
 from .answers import Answer as Answer
 from .answers import Refusal as Refusal
+from .archives import unpack as unpack
+from .archives import unpack_member as unpack_member
+from .downloads import download as download
+from .downloads import is_web_address as is_web_address
+from .file_objects import as_bytes as as_bytes
+from .file_objects import is_file_object as is_file_object
+from .file_objects import name_stream as name_stream
+from .file_objects import writing_into as writing_into
+from .gdal import RASTER_DRIVERS as RASTER_DRIVERS
+from .gdal import REFERRING_DRIVERS as REFERRING_DRIVERS
+from .gdal import VECTOR_DRIVERS as VECTOR_DRIVERS
+from .gdal import make_environment as make_environment
 from .limits import Limits as Limits
 from .limits import choose_limits as choose_limits
+from .limits import measure_free_memory as measure_free_memory
 from .spooling import describe_system_error as describe_system_error
 from .spooling import is_pipe as is_pipe
 from .spooling import open_ordinary_file as open_ordinary_file

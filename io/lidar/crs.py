@@ -19,7 +19,7 @@ from ...base.crs import CRS, FOOT, METRE, US_SURVEY_FOOT, Unit
 from ...base.errors import CrsError, MissingExtraError, ReadError, TinsmithError
 from ...base.sentences import coordinate
 from ..isolated import run_isolated
-from ..reprojection.transformation import transform_points
+from ..reprojection import transform_points
 
 if TYPE_CHECKING:
     from .header import Header

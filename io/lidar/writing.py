@@ -17,8 +17,8 @@ from ...base.progress import Progress
 from ...base.sentences import FILE, coordinate
 from ...tin import TIN, Survey
 from ..mesh.common import require_writable
-from ..registry.losses import warn_of_lost_attributes
-from ..reprojection.quality import require_kept
+from ..registry import warn_of_lost_attributes
+from ..reprojection import require_kept
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

@@ -15,10 +15,9 @@ from ...base.errors import CrsError, FormatError, OptionError, PointsError, Read
 from ...base.sentences import FILE, counted, height
 from ...tin import TIN, Surface, Survey
 from ...tin.checking.overlaps import describe_oddities
-from ...tin.screening.nodata import find_suspect_elevations
+from ...tin.screening import find_suspect_elevations
 from ...tin.topology import edge_keys
-from ..reprojection.contradictions import look_at_crs
-from ..reprojection.placement import settle_unit
+from ..reprojection import look_at_crs, settle_unit
 from .surface_part import make_surface
 
 if TYPE_CHECKING:

@@ -6,7 +6,7 @@ import warnings
 from typing import TYPE_CHECKING
 
 from ...base.crs import CRS
-from ..reprojection.transformation import reproject
+from ..reprojection import reproject
 
 if TYPE_CHECKING:
     from ...base.arrays import Float64Array

@@ -14,7 +14,7 @@ from ...base.errors import PointsError, ReadError
 from ...base.notes import naming_file
 from ...base.products import product
 from ...base.sentences import counted, name_file
-from ...terrain.drawing.models import choose_origin
+from ...terrain.drawing import choose_origin
 from ...tin import TIN
 from ...tin.checking.overlaps import describe_oddities
 from .common import (

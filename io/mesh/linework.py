@@ -8,7 +8,7 @@ import numpy as np
 
 from ...base.sentences import counted
 from ...tin import TIN
-from ...tin.constraints.breaklines import Lines
+from ...tin.constraints import Lines
 from ...tin.topology import NO_NEIGHBOR, edge_keys, ends
 from .common import add_notes, flag_edges
 

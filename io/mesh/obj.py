@@ -17,7 +17,7 @@ import numpy as np
 
 from ...base.atomic import replacing
 from ...base.errors import WriteError
-from ..registry.side_files import replacing_data_set
+from ..registry import replacing_data_set
 from . import common
 from .common import Mesh, mesh_reader
 from .text_rows import (

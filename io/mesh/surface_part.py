@@ -14,8 +14,7 @@ from ...base.sentences import counted, inflect
 from ...tin.checking.overlaps import find_overlap
 from ...tin.predicates import columns, orientation
 from ...tin.topology import find_offsets
-from ...tin.validation.points import as_points
-from ...tin.validation.triangles import as_triangles
+from ...tin.validation import as_points, as_triangles
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -11,7 +11,7 @@ from ...base.crs import find_wkt
 from ...base.errors import OptionError, WriteError
 from ...base.notes import warn
 from ...base.sentences import FILE
-from ..registry.side_files import replacing_data_set
+from ..registry import replacing_data_set
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -19,10 +19,9 @@ from ...base.progress import Progress
 from ...base.sentences import FILE, coordinate, counted
 from ...terrain.surface import trace_rings
 from ...tin import Bounds, Survey
-from ...tin.screening.elevation_summary import ElevationSummary
-from ...tin.screening.nodata import parse_nodata
+from ...tin.screening import ElevationSummary, parse_nodata
 from ..door import names_its_file
-from ..isolated.limits import measure_free_memory
+from ..isolated import measure_free_memory
 from ..registry import PointChunk, StreamEnd, StreamHead, gather, taking
 from ..reprojection import Placing, place, settle_unit, stays
 from .header import Affine, Header, read_header, stream_strips

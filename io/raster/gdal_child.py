@@ -10,8 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from ..isolated import Answer
-from ..isolated.gdal import RASTER_DRIVERS, REFERRING_DRIVERS, make_environment
+from ..isolated import RASTER_DRIVERS, REFERRING_DRIVERS, Answer, make_environment
 
 ENVIRONMENT = make_environment()
 

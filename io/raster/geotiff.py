@@ -14,10 +14,10 @@ import numpy as np
 from ...base import optional
 from ...base.errors import WriteError, choice
 from ...base.policies import CellType, OverviewMethod, RasterCompression
-from ...base.results.columns import UNKNOWN_UNIT, unit_text
+from ...base.results import UNKNOWN_UNIT, unit_text
 from ...base.sentences import FILE
-from ..registry.side_files import replacing_data_set
-from ..reprojection.quality import require_kept
+from ..registry import replacing_data_set
+from ..reprojection import require_kept
 from .cell_types import store_as
 
 if TYPE_CHECKING:

@@ -11,7 +11,7 @@ import numpy as np
 from ...base.crs import CRS, Unit
 from ...base.errors import OptionError, ReadError
 from ...base.sentences import FILE, counted
-from ...tin.screening.area_of_use import AreaOfUse
+from ...tin.screening import AreaOfUse
 
 if TYPE_CHECKING:
     from .header import Header

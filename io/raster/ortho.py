@@ -16,7 +16,7 @@ from ...base.notes import warn
 from ...base.sentences import FILE
 from ...terrain.viewer.ortho import Ortho
 from ..isolated import Limits, choose_limits, require_local, run_isolated
-from ..reprojection.transformation import reproject
+from ..reprojection import reproject
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence

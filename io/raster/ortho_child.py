@@ -13,8 +13,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ...base.crs import CRS
-from ..isolated import Answer, Refusal
-from ..isolated.gdal import make_environment
+from ..isolated import Answer, Refusal, make_environment
 from .gdal_child import prepare as prepare
 
 ENVIRONMENT = make_environment()

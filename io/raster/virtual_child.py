@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ..isolated.gdal import REFERRING_DRIVERS, make_environment
+from ..isolated import REFERRING_DRIVERS, make_environment
 from .gdal_child import _require_plain_drivers
 from .gdal_child import read_header as read_header
 from .gdal_child import read_strips as read_strips

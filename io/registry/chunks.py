@@ -14,7 +14,7 @@ from ...base.errors import ReadError
 from ...base.sentences import FILE
 from ...base.types import RowSources
 from ...tin import TIN, Survey
-from ..isolated.limits import measure_free_memory
+from ..isolated import measure_free_memory
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -1,10 +1,19 @@
 # Names that other packages of `io` use, each with the module that has it.
 from .contradictions import are_small_degrees as are_small_degrees
 from .contradictions import checking_crs as checking_crs
+from .contradictions import look_at_crs as look_at_crs
+from .joining import SOURCE_FILE as SOURCE_FILE
+from .joining import join_surveys as join_surveys
+from .placement import DegreesError as DegreesError
+from .placement import Placed as Placed
 from .placement import Placing as Placing
 from .placement import place as place
 from .placement import settle_unit as settle_unit
 from .placement import stays as stays
+from .quality import require_kept as require_kept
 from .transformation import find_bounds as find_bounds
 from .transformation import find_conversion_factor as find_conversion_factor
 from .transformation import is_geographic as is_geographic
+from .transformation import length_unit as length_unit
+from .transformation import reproject as reproject
+from .transformation import transform_points as transform_points

@@ -14,9 +14,9 @@ import numpy as np
 
 from ...base.checks import as_flag
 from ...base.errors import CrsError
-from ...base.georeference.axes import gives_northing_first
+from ...base.georeference import gives_northing_first
 from ...base.sentences import coordinate, counted
-from ...tin.screening.area_of_use import AreaOfUse
+from ...tin.screening import AreaOfUse
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -12,7 +12,7 @@ from ...base.georeference import agree
 from ...base.sentences import coordinate, counted
 from ...base.types import RowSources
 from ...tin import Survey
-from ...tin.building.attributes import join_columns
+from ...tin.building import join_columns
 from .surfaces import scale_survey
 
 if TYPE_CHECKING:

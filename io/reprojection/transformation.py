@@ -13,7 +13,7 @@ from ...base.crs import CRS, UNKNOWN, Unit, assume_elevation_unit
 from ...base.errors import CrsError
 from ...base.sentences import coordinate, counted
 from ...tin import Bounds
-from ...tin.validation.points import as_points
+from ...tin.validation import as_points
 from .quality import Quality, describe_missing_grids, judge
 
 if TYPE_CHECKING:

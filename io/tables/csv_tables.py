@@ -12,10 +12,9 @@ import numpy as np
 from ...base.atomic import replacing
 from ...base.checks import as_flag, require_count
 from ...base.errors import FormatError
-from ...base.results import Features, Table
-from ...base.results.columns import unit_text
+from ...base.results import Features, Table, unit_text
 from ...base.sentences import FILE
-from ..registry.losses import warn_of_formulas
+from ..registry import warn_of_formulas
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -23,7 +22,7 @@ if TYPE_CHECKING:
 
     from ...base.arrays import AnyArray
     from ...base.progress import Tell
-    from ...base.results.columns import Units
+    from ...base.results import Units
 
 _CHUNK_ROWS = 100_000
 _AXES = ("easting", "northing", "elevation")

@@ -6,7 +6,7 @@ import json
 from typing import TYPE_CHECKING, Any
 
 from ...base.atomic import replacing
-from ...base.results.columns import unit_text
+from ...base.results import unit_text
 from ..vector.geojson.values import json_texts, properties_template
 
 if TYPE_CHECKING:

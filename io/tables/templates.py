@@ -9,7 +9,7 @@ from ...base.errors import OptionError, ReadError
 from ...base.notes import naming_file
 from ...base.sentences import FILE
 from ...terrain import Template
-from ..delimited.query_points import read_text_table
+from ..delimited import read_text_table
 
 if TYPE_CHECKING:
     import os

@@ -9,8 +9,8 @@ import numpy as np
 from ...base.crs import CRS, FOOT, US_SURVEY_FOOT, Unit
 from ...base.errors import OptionError, ReadError
 from ...base.sentences import FILE, counted, height
-from ..delimited.columns import find_role, find_unit_word
-from ..reprojection.placement import settle_unit
+from ..delimited import find_role, find_unit_word
+from ..reprojection import settle_unit
 
 if TYPE_CHECKING:
     from ...base.arrays import AnyArray, BoolArray, Float64Array, Int64Array

@@ -30,7 +30,7 @@ from ..isolated import (
     run_isolated,
     translate_system_errors,
 )
-from ..registry.signatures import HEAD_BYTES, find_reference_kind
+from ..registry import HEAD_BYTES, find_reference_kind
 from .layers import Layer, name_apart, name_columns
 from .signatures import is_parquet
 from .well_known_binary import replace_surfaces

@@ -10,8 +10,7 @@ from typing import Any
 import numpy as np
 
 from ...base.sentences import FILE
-from ..isolated import Answer, Refusal
-from ..isolated.gdal import REFERRING_DRIVERS, VECTOR_DRIVERS, make_environment
+from ..isolated import REFERRING_DRIVERS, VECTOR_DRIVERS, Answer, Refusal, make_environment
 
 ENVIRONMENT = make_environment()
 

@@ -13,7 +13,7 @@ from ...base.errors import ReadError
 from ...base.notes import naming_file
 from ...base.results import Features
 from ...base.sentences import FILE, counted, inflect
-from ..reprojection.contradictions import checking_crs
+from ..reprojection import checking_crs
 from .features import read_features
 from .parts import Wanted, crs_notes, move_to_crs
 from .point_tables import is_point_table, read_point_table

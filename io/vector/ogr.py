@@ -12,11 +12,10 @@ import numpy as np
 from ...base import optional
 from ...base.atomic import replacing_files
 from ...base.errors import WriteError
-from ...base.results.columns import UNKNOWN_UNIT, unit_text
-from ...base.results.geometries import build_geometries
+from ...base.results import UNKNOWN_UNIT, build_geometries, unit_text
 from ...base.sentences import FILE
 from ...tin import Survey
-from ..reprojection.quality import require_kept
+from ..reprojection import require_kept
 from .surface_features import make_features
 from .well_known_binary import encode_equal_shapes
 

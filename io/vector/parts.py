@@ -11,8 +11,7 @@ from ...base.crs import assume_elevation_unit
 from ...base.errors import ReadError
 from ...base.sentences import FILE, counted
 from ...tin.topology import find_offsets
-from ..reprojection.placement import place
-from ..reprojection.transformation import find_conversion_factor
+from ..reprojection import find_conversion_factor, place
 from .elevations import find_elevation_unit
 from .layers import list_lines, take_apart
 

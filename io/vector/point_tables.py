@@ -10,8 +10,7 @@ import numpy as np
 from ...base import optional
 from ...base.errors import CrsError, ReadError
 from ...base.sentences import FILE, counted
-from ..delimited.names import parse_name
-from ..delimited.query_points import read_query_points
+from ..delimited import parse_name, read_query_points
 from ..isolated import open_ordinary_file, require_local
 from ..registry import find_format, list_claims
 from .layers import Layer

@@ -16,7 +16,7 @@ from ...base.errors import OptionError, ReadError, choice
 from ...base.policies import LineReading
 from ...base.sentences import FILE, counted
 from ...tin import TIN, Breakline, Survey
-from ...tin.screening.nodata import describe_elevations, parse_nodata
+from ...tin.screening import describe_elevations, parse_nodata
 from ...tin.topology import find_offsets
 from ..mesh.common import Reference, join_places, make_tin
 from ..registry import taking

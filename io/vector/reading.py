@@ -19,9 +19,8 @@ from ...base.notes import naming_file
 from ...base.policies import BreaklineKind
 from ...base.sentences import FILE, height, inflect
 from ...tin import Breakline, Water
-from ...tin.constraints.breaklines import as_ring
-from ..reprojection.contradictions import checking_crs
-from ..reprojection.placement import settle_unit
+from ...tin.constraints import as_ring
+from ..reprojection import checking_crs, settle_unit
 from .elevations import find_named_unit, list_elevation_columns
 from .features import read_features
 from .layers import Layer

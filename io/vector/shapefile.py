@@ -11,7 +11,7 @@ from ...base.notes import warn
 from ...base.results import Features
 from ...base.sentences import FILE, counted
 from ..mesh.common import require_tin
-from ..registry.side_files import replacing_data_set
+from ..registry import replacing_data_set
 from .ogr import write_layer
 from .surface_features import make_features, make_whole_surface
 from .well_known_binary import encode_tin

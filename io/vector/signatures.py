@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
-from ..registry.signatures import skip_prologue
+from ..registry import skip_prologue
 
 if TYPE_CHECKING:
     from pathlib import Path

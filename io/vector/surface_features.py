@@ -10,7 +10,7 @@ from ...base import optional
 from ...base.errors import FormatError, choice
 from ...base.policies import FeatureKind
 from ...base.results import Features
-from ...terrain.drawing.linework import EDGE_KINDS, find_line_edges
+from ...terrain.drawing import EDGE_KINDS, find_line_edges
 from ...terrain.relief.gradients import aspect, slope
 from ...terrain.surface import measure_areas, measure_ring_area
 from ...tin import TIN, Survey
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from ...base.arrays import AnyArray, Int32Array
-    from ...base.results.features import Kind
+    from ...base.results import Kind
 
 Writable: TypeAlias = TIN | Survey | Features
 

@@ -9,10 +9,10 @@ import numpy as np
 
 from ...base.checks import require_tin, require_type
 from ...base.errors import OptionError, TinsmithError
-from ...base.georeference.axes import turn_into_drawing
+from ...base.georeference import turn_into_drawing
 from ...base.results import Table
 from ...base.sentences import counted
-from ...tin.screening.suspects import DROPPED
+from ...tin.screening import DROPPED
 from ..drawing import palette, parse_title
 from .figures import INK, picture
 from .maps import draw_shade, shade_for_map, start_map

@@ -15,7 +15,7 @@ from .maps import draw_polygons, draw_scale, draw_shade, shade_for_map, start_ma
 
 if TYPE_CHECKING:
     from ...base.arrays import Float64Array
-    from ...base.georeference.units import Ground
+    from ...base.georeference import Ground
     from ...base.results import Features
     from ...tin import TIN
     from .maps import Map

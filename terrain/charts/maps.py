@@ -9,8 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ...base import optional
-from ...base.georeference import label_axes
-from ...base.georeference.units import find_ground
+from ...base.georeference import find_ground, label_axes
 from ..drawing import choose_ticks
 from ..gridding.shading import hillshade
 from .figures import INK, color_frame, start_figure, write_title
@@ -18,7 +17,7 @@ from .figures import INK, color_frame, start_figure, write_title
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from ...base.georeference.units import Ground
+    from ...base.georeference import Ground
     from ...base.results import Features, Raster
     from ...tin import TIN
 

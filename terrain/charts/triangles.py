@@ -7,15 +7,14 @@ from typing import TYPE_CHECKING, Any
 from ...base import optional
 from ...base.checks import as_flag, as_floats, require_tin
 from ...base.errors import OptionError
-from ...base.georeference import find_axes
-from ...base.georeference.units import find_ground
+from ...base.georeference import find_axes, find_ground
 from ...base.products import product
 from ..drawing import LINE_STYLES, find_line_edges, palette
 from ..surface import compute_normals, measure_slopes
 
 if TYPE_CHECKING:
     from ...base.arrays import Float64Array
-    from ...base.georeference.units import Ground
+    from ...base.georeference import Ground
     from ...tin import TIN
 
 _MOST_WITH_EDGES = 5_000

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import numpy as np
 
 from ...base.crs import CRS
-from ...base.georeference.axes import Axes, DrawnCRS, find_axes
+from ...base.georeference import Axes, DrawnCRS, find_axes
 from ...base.results import Features, Raster
 from ...tin import Bounds, Survey
 from ...tin.surface import Surface

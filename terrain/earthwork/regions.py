@@ -12,7 +12,7 @@ from ...base.errors import LinesError, OptionError
 from ...base.georeference import require_same_crs
 from ...base.results import Features
 from ...tin import triangulate
-from ...tin.constraints.polygons import gather_rings_of_regions
+from ...tin.constraints import gather_rings_of_regions
 from ..surface import Pieces, Surface
 
 if TYPE_CHECKING:

@@ -11,8 +11,7 @@ from ...base.checks import as_length
 from ...base.crs import CRS
 from ...base.errors import OptionError, PointsError
 from ...base.georeference import require_same_crs
-from ...base.results import Raster
-from ...base.results.raster import require_grid
+from ...base.results import Raster, require_grid
 from ...base.sentences import coordinate, counted
 from ...base.types import Bounds, Grid
 

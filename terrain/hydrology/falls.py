@@ -9,7 +9,7 @@ import numpy as np
 
 from ...tin.predicates import falls_across
 from ...tin.topology import NO_NEIGHBOR
-from ...tin.validation.points import require_exact_range
+from ...tin.validation import require_exact_range
 
 if TYPE_CHECKING:
     from ...base.arrays import BoolArray, Float64Array, Int8Array, Int32Array, Int64Array

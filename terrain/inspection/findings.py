@@ -11,17 +11,14 @@ from ...base.products import product
 from ...base.progress import Progress
 from ...base.results import Table
 from ...tin import TIN, Surface, Survey, triangulate
-from ...tin.screening.gaps import describe_gaps
-from ...tin.screening.naming import find_number
-from ...tin.screening.searching import inspect_points, screen_points
-from ...tin.screening.suspects import DROPPED
+from ...tin.screening import DROPPED, describe_gaps, find_number, inspect_points, screen_points
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
     from ...base.arrays import Int32Array, Int64Array
     from ...base.progress import Tell
-    from ...tin.screening.suspects import Suspect
+    from ...tin.screening import Suspect
 
 
 @product

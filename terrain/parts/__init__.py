@@ -7,6 +7,6 @@ plane. It equals the product of the whole surface to the last bit, whatever the 
 whatever order their parts are computed.
 """
 
-from .surfaces import are_inner, are_owned, are_owned_triangles, as_surface, require_local
+from ...base.lazy import lazy_names
 
-__all__ = ["are_inner", "are_owned", "are_owned_triangles", "as_surface", "require_local"]
+__getattr__, __dir__, __all__ = lazy_names(__name__)

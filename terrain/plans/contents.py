@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
 
     from ...base.arrays import AnyArray, Float64Array
-    from ...base.georeference.axes import Label as AxisLabel
+    from ...base.georeference import Label as AxisLabel
     from ...base.results import Features
     from ...tin import TIN, Survey
     from .footprint import Footprint

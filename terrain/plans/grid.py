@@ -16,7 +16,7 @@ from .windows import turn
 
 if TYPE_CHECKING:
     from ...base.arrays import BoolArray, Float64Array
-    from ...base.georeference.axes import Label as AxisLabel
+    from ...base.georeference import Label as AxisLabel
     from ...tin import Bounds
     from .canvas import Canvas
     from .windows import Window

@@ -8,7 +8,7 @@ import numpy as np
 
 from ...base.checks import require_tin
 from ...base.errors import PointsError, choice
-from ...base.georeference.units import find_scales
+from ...base.georeference import find_scales
 from ...base.policies import CurvatureKind, SurfacePart
 from ...base.products import product
 from ...tin.validation import thread_count

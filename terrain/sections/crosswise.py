@@ -13,7 +13,7 @@ from ...base.georeference import find_axes
 from ...base.products import product
 from ...base.results import Features, Table
 from ...base.sentences import coordinate
-from ...tin.validation.points import as_elevations
+from ...tin.validation import as_elevations
 from ..surface import Segments
 from .axes import Places, as_axis
 from .profiles import measure_rows, require_few, require_surface

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from ...tin.meshing.surface_difference import Crossings
+from ...tin.meshing import Crossings
 from ...tin.topology import find_offsets, find_owners
 
 if TYPE_CHECKING:

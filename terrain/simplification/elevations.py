@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from ...base.errors import OptionError, PointsError
-from ...base.results.gridded import locate_centers
+from ...base.results import locate_centers
 from ...base.types import seal
 
 if TYPE_CHECKING:

@@ -18,10 +18,9 @@ from ...base.errors import OptionError, PointsError
 from ...base.progress import Progress
 from ...base.sentences import counted
 from ...tin import Survey, topology, triangulate
-from ...tin.meshing.simplification import Errors, Goal, insert_until_near
-from ...tin.meshing.surface_difference import choose_rows
+from ...tin.meshing import Errors, Goal, choose_rows, insert_until_near
 from ...tin.report import Simplification
-from ...tin.screening.nodata import describe_suspects, find_suspect_elevations
+from ...tin.screening import describe_suspects, find_suspect_elevations
 from ...tin.topology import NO_NEIGHBOR
 from ...tin.validation import thread_count
 from .. import _kernel

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from ...base.errors import PointsError
-from ...tin.meshing.simplification import are_straight, find_rounding
+from ...tin.meshing import are_straight, find_rounding
 from ..surface import find_border, trace_cycles
 from .elevations import Heights
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
 
     from ...base.arrays import BoolArray, Float64Array, Int64Array
-    from ...tin.meshing.simplification import Goal
+    from ...tin.meshing import Goal
     from .elevations import Block, Elevations
 
 

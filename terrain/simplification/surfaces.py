@@ -8,7 +8,7 @@ from ...base.errors import OptionError
 from ...base.products import product
 from ...base.progress import Progress
 from ...base.results import Raster
-from ...tin.meshing.simplification import Goal, simplify_tin
+from ...tin.meshing import Goal, simplify_tin
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from ...base.arrays import Float64Array, Int32Array, Int64Array
-    from ...base.results.columns import Units
+    from ...base.results import Units
     from ...tin import TIN
 
 

@@ -16,15 +16,14 @@ from ...base.results import Features
 from ...base.sentences import counted, shown
 from ...tin import Breakline, validation
 from ...tin.building import find_crs
-from ...tin.constraints.breaklines import as_coords
+from ...tin.constraints import as_coords
 from ...tin.topology import find_offsets
-from ...tin.validation.geometries import find_geometries
-from ...tin.validation.points import require_exact_range
+from ...tin.validation import find_geometries, require_exact_range
 
 if TYPE_CHECKING:
     from ...base.arrays import AnyArray, Float64Array
     from ...tin import TIN
-    from ...tin.validation.geometries import Geometries
+    from ...tin.validation import Geometries
 
 _KINDS = {"Point": "points", "LineString": "lines", "Polygon": "polygons"}
 _LEAST = {"points": 1, "lines": 2, "polygons": 4}

@@ -10,8 +10,7 @@ import numpy as np
 
 from ...base.checks import as_number, require_tin
 from ...base.errors import choice
-from ...base.georeference import find_axes
-from ...base.georeference.units import find_scales
+from ...base.georeference import find_axes, find_scales
 from ...base.policies import SlopeUnit, SurfacePart
 from ...tin.validation import thread_count
 from .. import _kernel

@@ -8,7 +8,7 @@ import numpy as np
 
 from ...base import optional
 from ...base.errors import PointsError
-from ...base.georeference.units import find_scales
+from ...base.georeference import find_scales
 from ...base.sentences import counted
 
 if TYPE_CHECKING:

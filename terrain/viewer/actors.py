@@ -14,7 +14,7 @@ from ..surface import Light, compute_normals, measure_aspects, measure_slopes
 
 if TYPE_CHECKING:
     from ...base.arrays import BoolArray, Float32Array, Float64Array, Int32Array
-    from ...base.georeference.units import Ground
+    from ...base.georeference import Ground
     from ...base.policies import Tint
     from ...tin import TIN
     from .ortho import Ortho

@@ -9,7 +9,7 @@ import numpy as np
 
 if TYPE_CHECKING:
     from ...base.arrays import Float64Array, Int32Array
-    from ...base.georeference.units import Ground
+    from ...base.georeference import Ground
     from ...tin import TIN, Bounds
     from .camera import View
 

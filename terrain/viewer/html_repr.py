@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ...base.georeference.units import find_ground
+from ...base.georeference import find_ground
 from ...base.products import product
 from ...base.sentences import counted
 from ..drawing import draw_north_up, interpolate_tints
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from ...base.arrays import Float64Array, UInt8Array
-    from ...base.georeference.units import Ground
+    from ...base.georeference import Ground
     from ...tin import TIN
 
 _TINTS = 256

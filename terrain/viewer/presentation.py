@@ -13,7 +13,7 @@ import numpy as np
 from ...base.atomic import as_path, replacing
 from ...base.checks import require_type
 from ...base.errors import RenderError, WriteError
-from ...base.georeference.units import find_ground
+from ...base.georeference import find_ground
 from ...base.notes import join_notes
 from ...base.products import product
 from ...tin import TIN, Survey
@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from ...base.arrays import Float64Array
-    from ...base.georeference.units import Ground
+    from ...base.georeference import Ground
     from .relief import ElevationRange
 
 PAGE_SUFFIXES = (".html", ".htm")

@@ -8,7 +8,7 @@ import numpy as np
 
 if TYPE_CHECKING:
     from ...base.arrays import BoolArray, Float64Array
-    from ...base.georeference.units import Ground
+    from ...base.georeference import Ground
     from ...tin import TIN
 
 _LEAST_POINTS = 20

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ...base import optional
-from ...base.georeference.units import find_ground
+from ...base.georeference import find_ground
 from ...base.sentences import counted
 from ...tin import Bounds
 from ..drawing import (
@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
     from ...base.arrays import Float64Array
-    from ...base.georeference.units import Ground
+    from ...base.georeference import Ground
     from ...tin import TIN
     from .camera import View
     from .corridor import Strips

@@ -10,15 +10,21 @@ import numpy as np
 from ...base.progress import Progress
 from ...base.sentences import counted
 from .. import _kernel
-from ..constraints.breaklines import Lines
-from ..constraints.clipping import BOUNDARY, EXTENT, HOLES, in_rings
-from ..constraints.constraint_set import LineSet
-from ..constraints.draping import drape
-from ..constraints.pslg import Pslg, find_lines_in
+from ..constraints import (
+    BOUNDARY,
+    EXTENT,
+    HOLES,
+    Lines,
+    LineSet,
+    Pslg,
+    drape,
+    find_lines_in,
+    in_rings,
+)
 from ..report import LEFT_OUT, Overruled, Report
 from ..topology import find_offsets
 from ..triangulation import Triangulation
-from ..validation.points import require_three
+from ..validation import require_three
 from .constrained import ConstrainedTriangulation, triangulate_constrained
 from .duplicates import merge_rows
 from .version import LineVertices, Version

@@ -11,15 +11,22 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from .. import _kernel
-from ..constraints.conforming import conform
-from ..constraints.constraint_set import ABOVE_ALL, BELOW_ALL, LineSet
-from ..constraints.noding import Noded, accept_noded, node
-from ..constraints.polylines import Polylines
-from ..constraints.pslg import build_mesh, build_mesh_of_growth, force
+from ..constraints import (
+    ABOVE_ALL,
+    BELOW_ALL,
+    LineSet,
+    Noded,
+    Polylines,
+    accept_noded,
+    build_mesh,
+    build_mesh_of_growth,
+    conform,
+    force,
+    node,
+)
 from ..report import Overruled
 from ..triangulation import Triangulation
-from ..validation.points import require_three
-from ..validation.threads import thread_count
+from ..validation import require_three, thread_count
 from .duplicates import merge_rows
 from .water import leave_out_water
 

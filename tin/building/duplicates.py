@@ -9,7 +9,7 @@ import numpy as np
 from ...base.errors import PointsError
 from ...base.policies import DuplicatePolicy
 from ...base.sentences import height, inflect
-from ..validation.points import SHOWN
+from ..validation import SHOWN
 
 if TYPE_CHECKING:
     from ...base.arrays import Float64Array, Int32Array, Int64Array

@@ -15,8 +15,8 @@ from ...base.ranges import describe_span, require_degrees
 from ...base.records import require, require_finite
 from ...base.sentences import coordinate, counted, height
 from .. import _kernel
-from ..constraints import Clip
-from ..constraints.constraint_set import (
+from ..constraints import (
+    Clip,
     LineSet,
     as_sequence,
     gather_extent,
@@ -24,10 +24,9 @@ from ..constraints.constraint_set import (
     gather_regions,
     gather_rings,
     require_length,
+    starts_with_elevations,
 )
-from ..constraints.polygons import starts_with_elevations
-from ..validation.points import as_masked_points, require_three
-from ..validation.threads import thread_count
+from ..validation import as_masked_points, require_three, thread_count
 from .reference import adds_to, settle_crs
 from .survey import Survey
 
@@ -37,7 +36,7 @@ if TYPE_CHECKING:
     from ...base.arrays import BoolArray, Float64Array, Int64Array
     from ...base.crs import CrsLike, UnitLike
     from ...base.types import GeometriesLike, PointsLike, RowSources
-    from ..constraints.breaklines import Breakline, Water
+    from ..constraints import Breakline, Water
     from .options import BuildOptions
 
 _NAMES = ("points", "breaklines", "boundary", "holes", "erase", "water")

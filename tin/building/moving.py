@@ -9,7 +9,7 @@ import numpy as np
 
 from ...base.checks import is_finite_number
 from ...base.errors import OptionError, PointsError
-from ..validation.points import as_points
+from ..validation import as_points
 
 if TYPE_CHECKING:
     from collections.abc import Callable

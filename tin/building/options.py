@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from ...base.checks import as_flag, require_distance, require_positive
 from ...base.errors import choice
 from ...base.policies import CrossingPolicy, DuplicatePolicy, TrimPolicy
-from ..validation.threads import thread_count
+from ..validation import thread_count
 
 
 @dataclass(frozen=True, kw_only=True)

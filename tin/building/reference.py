@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from ...base.crs import CRS
 from ...base.errors import CrsError
-from ..validation.geometries import is_plain
+from ..validation import is_plain
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -15,10 +15,8 @@ from ...base.lazy import make_html_repr
 from ...base.ranges import require_degrees
 from ...base.sentences import counted
 from ...base.types import Bounds, Finding, RowSources
-from ..constraints.breaklines import Breakline, Water
-from ..constraints.constraint_set import as_sequence
-from ..validation.geometries import is_plain
-from ..validation.tables import Table, as_table
+from ..constraints import Breakline, Water, as_sequence
+from ..validation import Table, as_table, is_plain
 from .attributes import as_columns, as_mapping
 from .reference import settle_crs
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from ...base.errors import CrsError
 from ...base.sentences import height
-from ..constraints.breaklines import Breakline, Water
+from ..constraints import Breakline, Water
 from .survey import Survey
 
 if TYPE_CHECKING:

@@ -11,7 +11,7 @@ import numpy as np
 from ...base.records import require_fields, require_indices
 from ...base.types import Frozen
 from .. import topology
-from ..constraints.breaklines import Lines
+from ..constraints import Lines
 from ..report import Report
 from ..triangulation import Triangulation
 from ..triangulation.interpolator import Interpolator

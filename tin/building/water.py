@@ -7,10 +7,15 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from ..constraints.constraint_set import ABOVE_ALL, LineSet
-from ..constraints.polylines import Polylines
-from ..constraints.pslg import build_mesh
-from ..constraints.ring_cover import find_crossings, gather_odd, walk_regions
+from ..constraints import (
+    ABOVE_ALL,
+    LineSet,
+    Polylines,
+    build_mesh,
+    find_crossings,
+    gather_odd,
+    walk_regions,
+)
 from ..predicates import orientation
 from ..report import Overruled
 from ..topology import edge_keys
@@ -20,7 +25,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
     from ...base.arrays import BoolArray, Float64Array, Int32Array, Int64Array
-    from ..constraints.ring_cover import Crossing
+    from ..constraints import Crossing
 
 _OUTSIDE = -1
 """Region beyond the hull of all shores."""

@@ -12,8 +12,7 @@ import numpy as np
 
 if TYPE_CHECKING:
     from ...base.arrays import Float64Array, Int64Array
-    from ..constraints.breaklines import Lines
-    from ..constraints.constraint_set import LineSet
+    from ..constraints import Lines, LineSet
 
 UNSEEN_CUTS = 16
 """Cuts that are allowed for in a part of a line that is left out."""

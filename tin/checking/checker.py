@@ -32,9 +32,9 @@ from typing import TYPE_CHECKING, Any
 from ...base.checks import as_flag, is_whole_number, require_tin
 from ...base.errors import CheckError, OptionError
 from ...base.products import product
-from ..building.survey import Survey
-from ..constraints.constraint_set import as_sequence, gather_lines
-from ..validation.points import as_masked_points
+from ..building import Survey
+from ..constraints import as_sequence, gather_lines
+from ..validation import as_masked_points
 from .chains import check_chains, check_segments
 from .connections import check_arrays, check_connections
 from .delaunay import check_delaunay
@@ -48,8 +48,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from ...base.arrays import Float64Array
-    from ..constraints.breaklines import Breakline
-    from ..constraints.constraint_set import LineSet
+    from ..constraints import Breakline, LineSet
     from ..surface import TIN
 
 LEVELS = (1, 2, 3)

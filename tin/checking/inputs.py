@@ -27,7 +27,7 @@ from .shape import find_boundary, has_sound_boundary
 
 if TYPE_CHECKING:
     from ...base.arrays import BoolArray, Float64Array
-    from ..constraints.constraint_set import LineSet
+    from ..constraints import LineSet
     from ..surface import TIN
     from .findings import Findings
 

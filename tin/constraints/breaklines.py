@@ -14,8 +14,7 @@ from ...base.policies import BreaklineKind, LineKind
 from ...base.records import require, require_indices, require_offsets
 from ...base.sentences import counted, height, inflect, shown
 from ...base.types import Frozen
-from ..validation.geometries import find_geometries
-from ..validation.tables import as_table
+from ..validation import as_table, find_geometries
 from .polylines import Polylines
 
 if TYPE_CHECKING:

@@ -13,7 +13,7 @@ from ...base.records import require, require_finite, require_indices, require_of
 from ...base.sentences import coordinate, shown
 from .. import _kernel
 from ..topology import find_offsets, find_owners
-from ..validation.geometries import find_geometries, is_plain
+from ..validation import find_geometries, is_plain
 from .breaklines import Breakline, Water, as_ring
 from .constraint_table import ConstraintTable
 from .given_geometries import convert_geometries

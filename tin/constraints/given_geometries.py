@@ -14,7 +14,7 @@ from .breaklines import Breakline, Water, as_ring
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
 
-    from ..validation.geometries import Geometries, Geometry
+    from ..validation import Geometries, Geometry
 
 _LEVELS = ("z", "level", "elevation", "height")
 """Columns that hold the elevation of water, the same as in files."""

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ...base.errors import LinesError
-from ..validation.geometries import find_geometries
+from ..validation import find_geometries
 from .breaklines import as_ring, find_elevations_at_start
 from .given_geometries import list_regions
 

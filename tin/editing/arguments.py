@@ -10,11 +10,16 @@ import numpy as np
 from ...base.errors import LinesError, PointsError
 from ...base.sentences import counted, shown
 from .._kernel import LARGEST_ELEVATION
-from ..constraints.breaklines import Breakline, as_coords
-from ..validation.geometries import find_geometries
-from ..validation.points import as_elevations, as_points, clean_points
-from ..validation.tables import Table, as_table
-from ..validation.vertices import as_vertex_array
+from ..constraints import Breakline, as_coords
+from ..validation import (
+    Table,
+    as_elevations,
+    as_points,
+    as_table,
+    as_vertex_array,
+    clean_points,
+    find_geometries,
+)
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike

@@ -15,16 +15,14 @@ import numpy as np
 from ...base.errors import LinesError, PointsError
 from ...base.types import Frozen
 from .. import _kernel
-from ..building.assembly import assemble
-from ..constraints.breaklines import Breakline
-from ..constraints.constraint_set import ABOVE_ALL, LineSet, gather_lines
+from ..building import assemble
+from ..constraints import ABOVE_ALL, Breakline, LineSet, gather_lines
 from ..topology import find_offsets
 from .accounts import renumber_rows
 
 if TYPE_CHECKING:
     from ...base.arrays import BoolArray, Float64Array, Int32Array, Int64Array
-    from ..building import Version
-    from ..building.inputs import BuildInputs
+    from ..building import BuildInputs, Version
 
 FLIP = "flip"
 """Name of the soft breakline that keeps a flipped edge."""

@@ -21,11 +21,9 @@ from ...base.crs import measure_angular_unit
 from ...base.errors import CrsError, LinesError
 from ...base.georeference import agree
 from ...base.ranges import require_degrees
-from ..building import Survey
-from ..building.reference import require_crs
+from ..building import Survey, require_crs
 from ..constraints import Breakline
-from ..validation.geometries import is_plain
-from ..validation.tables import as_table
+from ..validation import as_table, is_plain
 from .arguments import as_array, scale_breakline, write_breakline
 from .session import Origin, Session
 
@@ -38,8 +36,7 @@ if TYPE_CHECKING:
     from ...base.crs import CRS
     from ...base.policies import BreaklineKind, CrossingPolicy, DuplicatePolicy
     from .._kernel import EditedMesh
-    from ..building import Version
-    from ..building.inputs import BuildInputs
+    from ..building import BuildInputs, Version
     from ..report import Edit
 
 _ONE = np.zeros(1, np.int32)

@@ -11,13 +11,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ...base.errors import PointsError, TinsmithError
-from ..building.assembly import assemble
-from ..building.inputs import BuildInputs
-from ..building.options import BuildOptions
-from ..constraints.constraint_set import BELOW_ALL, LineSet
-from ..constraints.constraint_table import ConstraintTable
+from ..building import BuildInputs, BuildOptions, assemble
+from ..constraints import BELOW_ALL, ConstraintTable, LineSet
 from ..topology import find_offsets
-from ..validation.points import as_points
+from ..validation import as_points
 
 if TYPE_CHECKING:
     from ...base.arrays import Int32Array

@@ -16,8 +16,7 @@ import numpy as np
 from ...base.errors import PointsError
 from ...base.sentences import coordinate, height
 from .. import _kernel
-from ..building import Version
-from ..building.duplicates import choose_elevations, merge_rows
+from ..building import Version, choose_elevations, merge_rows
 from ..report import Edit, Report
 from ..triangulation import Triangulation
 from .accounts import account_for_removed, add_chain, renumber_vertices, replace_merges
@@ -28,7 +27,7 @@ if TYPE_CHECKING:
 
     from ...base.arrays import BoolArray, Float64Array, Int32Array, Int64Array
     from ...base.policies import DuplicatePolicy
-    from ..building.inputs import BuildInputs
+    from ..building import BuildInputs
     from ..constraints import Breakline
     from .changes import NumberedInputs
 

@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from ...base.arrays import AnyArray, Float64Array, Int64Array
     from ...base.policies import CrossingPolicy, DuplicatePolicy
     from ..building import Version
-    from ..constraints.breaklines import Breakline
+    from ..constraints import Breakline
     from .changes import NumberedInputs
 
 

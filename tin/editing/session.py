@@ -24,8 +24,7 @@ from .rebuilding import Rebuild
 if TYPE_CHECKING:
     from ...base.arrays import AnyArray
     from .._kernel import EditedMesh
-    from ..building import Version
-    from ..building.inputs import BuildInputs
+    from ..building import BuildInputs, Version
 
 
 class Origin(NamedTuple):

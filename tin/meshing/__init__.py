@@ -1,7 +1,5 @@
 """Meshes for finite elements: how well shaped triangles are, and points that better them."""
 
-from .clipping import Clipped, clip_tin
-from .shape_quality import measure_smallest_angles
-from .simplification import simplify_convex
+from ...base.lazy import lazy_names
 
-__all__ = ["Clipped", "clip_tin", "measure_smallest_angles", "simplify_convex"]
+__getattr__, __dir__, __all__ = lazy_names(__name__)

@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 
     from ...base.arrays import BoolArray, Float64Array, Int32Array, Int64Array
     from ...base.progress import Tell
-    from ..constraints.pslg import Pslg
+    from ..constraints import Pslg
 
 _MOST_ATTEMPTS = 5
 """The last one but one splits no edge of the boundary where splitting some was not to be had."""

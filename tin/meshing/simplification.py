@@ -22,8 +22,7 @@ from ..editing import account_for_edits, account_for_removed, renumber_vertices
 from ..report import Simplification
 from ..surface import TIN
 from ..triangulation import Triangulation
-from ..validation import thread_count
-from ..validation.vertices import as_vertex_array
+from ..validation import as_vertex_array, thread_count
 from .flips import count_flips, describe_flips
 from .surface_difference import SurfaceMeter
 from .surface_pslg import gather_pslg, list_rings
@@ -35,7 +34,7 @@ if TYPE_CHECKING:
 
     from ...base.arrays import BoolArray, Float64Array, Int32Array, Int64Array
     from ...base.progress import Tell
-    from ..constraints.breaklines import Lines
+    from ..constraints import Lines
 
 _ROUNDING_BITS = 46
 """Elevations that differ in digits beyond these count as equal: 1e-11 m at 1000 m."""

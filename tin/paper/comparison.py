@@ -15,10 +15,10 @@ from ...base.checks import require_count
 from ...base.errors import PointsError
 from ...base.sentences import counted
 from .. import _kernel
-from ..building.survey import Survey
+from ..building import Survey
 from ..construction import triangulate
 from ..meshing import measure_smallest_angles
-from ..validation.points import as_points
+from ..validation import as_points
 from .cover import cover
 from .faults import find_overlapping, find_violating
 from .growth import Network, improved, original

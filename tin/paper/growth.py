@@ -44,7 +44,7 @@ from ...base.errors import PointsError, choice
 from ...base.policies import DistanceRule, EmptyCircleRule
 from ...base.sentences import counted
 from ..predicates import columns
-from ..validation.points import as_points
+from ..validation import as_points
 from .lists import Edge, Lists, Triangle, sides
 from .rules import (
     Rule,

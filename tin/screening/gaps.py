@@ -9,7 +9,7 @@ import numpy as np
 from ...base.georeference import find_scales
 from ...base.sentences import counted
 from .. import _kernel
-from ..constraints.clipping import trim
+from ..constraints import trim
 from ..topology import NO_NEIGHBOR
 from .parts import find_parts
 

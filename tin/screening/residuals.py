@@ -9,7 +9,7 @@ import numpy as np
 
 from .. import _kernel
 from ..topology import NO_NEIGHBOR, edge_keys, edges_at, find_offsets, find_owners
-from ..validation.threads import thread_count
+from ..validation import thread_count
 
 if TYPE_CHECKING:
     from ...base.arrays import BoolArray, Float64Array, Int32Array, Int64Array

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
     from ...base.arrays import BoolArray, Float64Array, Int32Array, Int64Array
     from ...base.policies import LineKind
-    from ..constraints.breaklines import Lines
+    from ..constraints import Lines
     from ..triangulation import Triangulation
 
 _MOST_JUDGED = 20_000

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from .. import _kernel
-from ..validation.threads import thread_count
+from ..validation import thread_count
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from .. import _kernel, topology
-from ..validation.threads import thread_count
+from ..validation import thread_count
 
 if TYPE_CHECKING:
     from ...base.arrays import Float64Array, Int8Array, Int32Array, Int64Array

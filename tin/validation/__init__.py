@@ -1,6 +1,5 @@
 """What callers give, checked on entry: options, tables of coordinates, points."""
 
-from .points import as_places, as_points, as_xy
-from .threads import available_cores, thread_count
+from ...base.lazy import lazy_names
 
-__all__ = ["as_places", "as_points", "as_xy", "available_cores", "thread_count"]
+__getattr__, __dir__, __all__ = lazy_names(__name__)

@@ -15,9 +15,9 @@ from ...base.errors import LinesError, OptionError
 from ...base.sentences import counted
 from ...base.types import Bounds
 from .. import _kernel
-from ..constraints.breaklines import as_ring
+from ..constraints import as_ring
 from ..topology import find_offsets
-from ..validation.threads import thread_count
+from ..validation import thread_count
 from .cells import Rings, cells_in_box, measure_signed_areas
 
 if TYPE_CHECKING:

@@ -24,7 +24,7 @@ from ....base.results import Features
 from ....base.sentences import FILE
 from ....tin import TIN, Surface, Survey
 from ....tin.topology import directed_edges, edge_keys
-from ...registry.losses import select_attributes, warn_of_unknown_elevations
+from ...registry import select_attributes, warn_of_unknown_elevations
 from ..drawing import choose_length_unit, list_lines, scale_elevations
 from .entities import EntityWriter
 from .names import (

@@ -19,7 +19,7 @@ from ....base.results import Features
 from ....base.sentences import FILE
 from ....terrain import Alignment
 from ....tin import TIN, Surface, Survey
-from ...registry.losses import select_attributes, warn_of_unknown_elevations
+from ...registry import select_attributes, warn_of_unknown_elevations
 from ..drawing import choose_length_unit, list_lines, scale_elevations
 from .alignment_writing import format_alignment
 from .content import ELEVATION_UNIT, FEATURE, KIND, LINE, PRIORITY, SOURCE, UNKNOWN, quote

@@ -16,14 +16,14 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from ....base.crs import METRE
-from ...delimited.lines import read_lines
+from ...delimited import read_lines
 from .record_lines import describe_head_fault, find_head, parse_coordinate, read_records
 from .records import Book, book_reader
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from ...delimited.lines import TextLines
+    from ...delimited import TextLines
 
 _WIDTH = 16
 _POINTS = ("69", "08")

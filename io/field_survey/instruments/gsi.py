@@ -21,7 +21,7 @@ from typing import TYPE_CHECKING, NamedTuple
 from ....base.crs import METRE
 from ....base.errors import OptionError, ReadError
 from ....base.sentences import FILE, counted, inflect
-from ...delimited.lines import read_lines
+from ...delimited import read_lines
 from .records import Book, book_reader, require_refraction
 from .reduction import Shot, Station, reduce_shot, to_radians
 
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from collections.abc import Container, Iterator
     from pathlib import Path
 
-    from ...delimited.lines import TextLines
+    from ...delimited import TextLines
 
 _WIDTHS = (8, 16)
 _HEAD = 7  # word index, information and sign

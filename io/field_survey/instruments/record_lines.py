@@ -9,10 +9,10 @@ import numpy as np
 
 from ....base.errors import ReadError
 from ....base.sentences import FILE
-from ...delimited.cells import is_number
+from ...delimited import is_number
 
 if TYPE_CHECKING:
-    from ...delimited.lines import TextLines
+    from ...delimited import TextLines
     from .records import Book
 
 _STX = "\x02"

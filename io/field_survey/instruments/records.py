@@ -16,8 +16,8 @@ from ....base.errors import CrsError, ReadError
 from ....base.sentences import FILE, counted, inflect
 from ....base.types import RowSources
 from ....tin import Survey
-from ...delimited.findings import find_odd_elevations, find_repeated_numbers, require_ground
-from ...reprojection.placement import place, settle_unit
+from ...delimited import find_odd_elevations, find_repeated_numbers, require_ground
+from ...reprojection import place, settle_unit
 from .reduction import NOT_APPLIED
 
 if TYPE_CHECKING:

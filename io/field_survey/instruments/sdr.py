@@ -19,8 +19,7 @@ from typing import TYPE_CHECKING
 from ....base.crs import METRE
 from ....base.errors import ReadError
 from ....base.sentences import FILE
-from ...delimited.cells import is_number
-from ...delimited.lines import read_lines
+from ...delimited import is_number, read_lines
 from .record_lines import describe_head_fault, find_head, read_records
 from .records import Book, book_reader, require_refraction
 from .reduction import Shot, Station, reduce_shot, to_radians
@@ -28,7 +27,7 @@ from .reduction import Shot, Station, reduce_shot, to_radians
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from ...delimited.lines import TextLines
+    from ...delimited import TextLines
 
 _ANGLES = {"1": "degrees", "2": "gon", "4": "mil"}
 _RIGHT_ANGLE = math.pi / 2

@@ -12,7 +12,7 @@ from ....base.errors import PointsError, ReadError
 from ....base.sentences import FILE
 from ....tin import TIN
 from ...isolated import run_isolated
-from ...reprojection.contradictions import look_at_crs
+from ...reprojection import look_at_crs
 from ..common import add_notes, choose_reference, make_tin
 from .records import Record, unpack_tin
 from .schema import digest_arrays

@@ -16,18 +16,13 @@ from ....base.crs import CRS, Unit
 from ....base.errors import PointsError, TinsmithError
 from ....base.records import require, require_fields, require_indices
 from ....tin import topology
-from ....tin.building.inputs import BuildInputs
-from ....tin.building.options import BuildOptions
-from ....tin.building.version import Version
-from ....tin.constraints.breaklines import Lines
-from ....tin.constraints.constraint_set import LineSet
-from ....tin.constraints.constraint_table import ConstraintTable
+from ....tin.building import BuildInputs, BuildOptions, Version
+from ....tin.constraints import ConstraintTable, Lines, LineSet
 from ....tin.editing.session import Origin
 from ....tin.report import Crossings, Edit, Overruled, Report, Simplification, Unmended
 from ....tin.surface import TIN
 from ....tin.triangulation import Triangulation
-from ....tin.validation.points import as_points
-from ....tin.validation.triangles import as_flags, as_triangles, turn_counter_clockwise
+from ....tin.validation import as_flags, as_points, as_triangles, turn_counter_clockwise
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Iterable, Mapping

@@ -21,7 +21,7 @@ from ....base.crs import assume_elevation_unit
 from ....base.errors import CrsError, WriteError
 from ....base.notes import warn
 from ....base.sentences import FILE, counted
-from ....terrain.drawing.palette import interpolate_tints
+from ....terrain.drawing import interpolate_tints
 from ..common import format_crs, format_unit, require_tin
 from ..texture import load_texture
 

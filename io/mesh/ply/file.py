@@ -20,7 +20,7 @@ from ....base.atomic import replacing
 from ....base.errors import ReadError
 from ....base.sentences import FILE, counted
 from ....tin import TIN, Surface, Survey
-from ...registry.losses import warn_of_lost_attributes
+from ...registry import warn_of_lost_attributes
 from .. import common
 from ..common import Mesh, flag_edges, mesh_reader
 from .body import Ragged, read_tables
@@ -40,7 +40,7 @@ if TYPE_CHECKING:
     from ....base.arrays import AnyArray, Float64Array, Int32Array
     from ....base.crs import CRS, Unit
     from ....base.progress import Tell
-    from ....tin.constraints.breaklines import Lines
+    from ....tin.constraints import Lines
     from .body import Table
     from .header import Header
 

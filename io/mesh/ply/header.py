@@ -10,7 +10,7 @@ from typing import Any, NamedTuple, get_args
 from ....base.errors import ReadError
 from ....base.policies import LineKind
 from ....base.sentences import FILE
-from ...registry.signatures import is_ply
+from ...registry import is_ply
 
 SCALARS = {
     "char": "i1",

@@ -17,7 +17,7 @@ import numpy as np
 from ....base.errors import ReadError
 from ....base.sentences import FILE
 from ....tin import topology
-from ....tin.constraints.breaklines import Lines
+from ....tin.constraints import Lines
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -11,9 +11,9 @@ import numpy as np
 from ....base.atomic import replacing
 from ....base.crs import CRS, METRE
 from ....base.errors import CrsError, WriteError
-from ....base.results.columns import unit_text
+from ....base.results import unit_text
 from ....base.sentences import FILE, coordinate, counted, inflect
-from ...reprojection.transformation import reproject
+from ...reprojection import reproject
 from ..surface_features import make_features
 from .values import json_texts, properties_template
 

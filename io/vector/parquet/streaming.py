@@ -12,7 +12,7 @@ from ....base import optional
 from ....base.crs import CRS
 from ....base.errors import ReadError
 from ....base.sentences import FILE, counted
-from ....tin.screening.elevation_summary import ElevationSummary
+from ....tin.screening import ElevationSummary
 from ...isolated import run_isolated, stream_isolated
 from ...registry import (
     PointChunk,

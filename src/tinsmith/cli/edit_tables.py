@@ -8,7 +8,7 @@ from itertools import groupby
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from ..base.sentences import shown
-from .output.failures import Failure
+from .output import Failure
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
     from ..io import Format
-    from ..io.registry.options import FormatOption
+    from ..io.registry import FormatOption
 
 _PREFIXES = {"read": "read__", "write": "write__"}
 """What the names of their values begin with, by what a format does."""

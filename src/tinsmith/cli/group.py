@@ -14,14 +14,16 @@ import click
 from .. import __version__
 from ..base.sentences import suggest
 from .command_list import FOLDERS, SECTIONS, SUMMARIES
-from .output.events import note_events
-from .output.failures import report_warning, show_failure, translate_failures
-from .output.streams import (
+from .output import (
     Terminated,
     accept_any_text,
+    note_events,
     raise_for_signals,
+    report_warning,
     reserve_standard_streams,
+    show_failure,
     silence,
+    translate_failures,
 )
 from .plug_in_commands import describe_faults, find_commands, find_owner, load_command
 

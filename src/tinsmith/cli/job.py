@@ -25,7 +25,7 @@ from .options import (
     Triangulating,
     Writing,
 )
-from .output.failures import Failure
+from .output import Failure
 from .outputs import describe_file, plan_products, require_format
 from .paths import STANDARD, Named, name_file
 
@@ -37,8 +37,7 @@ if TYPE_CHECKING:
     from ..tiled.cloud import TiledPoints
     from ..tin import TIN, Survey
     from .options import Coding, Group
-    from .output import Facts
-    from .output.console import Console
+    from .output import Console, Facts
     from .outputs import Products
     from .parameters import Decorator
 
@@ -343,7 +342,7 @@ def _read_once(
 
 def _read_to_reproject(path: Path, reading: Reading, target: str) -> Survey | TIN:
     """Read in the input's own CRS; one in degrees, which no TIN has, in the one that is wanted."""
-    from ..io.reprojection.placement import DegreesError
+    from ..io.reprojection import DegreesError
 
     try:
         return _read_once(path, reading)

@@ -8,7 +8,7 @@ from typing import Any
 
 import click
 
-from .output.console import Console
+from .output import Console
 from .parameters import (
     Decorator,
     FormatName,
@@ -162,7 +162,7 @@ def _take_unchecked(
     """Take coordinates of every file of the command as they are, those of lines too."""
     del parameter
     if is_checked is False:
-        from ..io.reprojection.contradictions import checking_crs
+        from ..io.reprojection import checking_crs
 
         context.with_resource(checking_crs(is_checked))
     return is_checked

@@ -15,8 +15,7 @@ from ..base.atomic import replacing, scratch_folder
 from ..base.sentences import suggest
 from .command import name_flags
 from .format_options import make_flag
-from .output.console import emit_file
-from .output.failures import Failure, note_written
+from .output import Failure, emit_file, note_written
 from .parameters import refuse_value
 from .paths import STANDARD, Named, describe_leftovers, name_file, require_separate, split_output
 
@@ -27,7 +26,7 @@ if TYPE_CHECKING:
     from ..terrain import Features, Raster, Table
     from ..tin import TIN, Survey
     from .options import Writing
-    from .output.console import Console
+    from .output import Console
 
     Product = TIN | Survey | Features | Raster | Table
 
@@ -121,7 +120,7 @@ class Products:
 
 def describe_file(path: Path) -> str:
     """Return the name of a file that was written, with its size, for people."""
-    from .output.summaries import describe_file_size
+    from .output import describe_file_size
 
     if path == STANDARD:
         return "standard output"
@@ -271,7 +270,7 @@ def _require_layered(planned: Sequence[Output]) -> None:
 def _require_taken(planned: Sequence[Output], given: dict[str, Any]) -> None:
     """Refuse an option of writing that no output takes."""
     from ..io import known_formats
-    from ..io.registry.options import find_option_not_taken
+    from ..io.registry import find_option_not_taken
 
     name = find_option_not_taken(given, [one.options_taken for one in planned])
     if name is not None:
@@ -354,7 +353,7 @@ def _find_format_of(product: Product, output: Output) -> Format:
 
 def _tabulate(features: Features) -> tuple[Table, list[str]]:
     """Return features as a table: of points their coordinates too; and what it lacks, if any."""
-    from ..base.results.table import tabulate_columns
+    from ..base.results import tabulate_columns
     from ..io.tables.csv_tables import tabulate_points
 
     if features.kind == "points":

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import click
 
-from .output.streams import escape_unprintable
+from .output import escape_unprintable
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -111,7 +111,7 @@ def require_separate(inputs: Iterable[Named], outputs: Sequence[Named]) -> None:
     where it should be is a WriteError.
     """
     from ..base.atomic import require_writable
-    from ..io.registry.side_files import is_replaceable_folder, list_sources
+    from ..io.registry import is_replaceable_folder, list_sources
 
     taken: dict[object, Named] = {}
     for one in _drop_streams(inputs, "input"):
@@ -163,7 +163,7 @@ def _require_outside(folder: Named, outputs: Sequence[Named]) -> None:
 
 def _require_spared(output: Named, read: dict[object, Named]) -> None:
     """Refuse an output beside which files are written, or removed, that are read."""
-    from ..io.registry.side_files import list_written_beside
+    from ..io.registry import list_written_beside
 
     for path in list_written_beside(output.path):
         if os.path.lexists(path):

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import click
 
 from ..base.plug_ins import describe_failure, find_plug_ins
-from .output.failures import Failure
+from .output import Failure
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -20,7 +20,7 @@ from .format_options import find_parameters
 from .parameters import Decorator, Words, parse_numbers
 
 if TYPE_CHECKING:
-    from ..io.registry.options import FormatOption
+    from ..io.registry import FormatOption
 
 _MOST_LETTERS = 300
 _REQUIRED = object()
@@ -65,7 +65,7 @@ def list_product_options(function: str, names: str, **words: str) -> list[Decora
 @cache
 def _read_parameters(function: str) -> dict[str, FormatOption]:
     """Return what the source of a function says of its parameters."""
-    from ..io.registry.options import FormatOption, describe_parameters
+    from ..io.registry import FormatOption, describe_parameters
 
     package, *modules, name = function.split(".")
     spec: Any = find_spec(f"tinsmith.{package}")

@@ -13,8 +13,7 @@ import click
 from ..base.sentences import counted
 from .job import Job, surface_options
 from .options import CONSOLE, READING, TRIANGULATING, WRITING, Group
-from .output import Facts
-from .output.failures import Failure, note_written
+from .output import Facts, Failure, note_written
 from .parameters import number_option, under
 from .paths import STANDARD
 
@@ -154,7 +153,7 @@ def choose_tiles(
         return None
     if not tiling.given and not any(map(_may_be_large, (*files, *others))):
         return None
-    from ..io.isolated.limits import measure_free_memory
+    from ..io.isolated import measure_free_memory
 
     cloud = take_points(job, *files)
     if not tiling.given:

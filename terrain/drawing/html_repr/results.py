@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ....base.georeference import find_axes
-from ....base.results.columns import unit_text
+from ....base.results import unit_text
 from ....base.sentences import counted
 from ..north_up import draw_north_up
 from .drawings import Canvas, draw_cells
@@ -29,8 +29,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from ....base.arrays import AnyArray, Float64Array, UInt8Array
-    from ....base.results import Features, Raster, Table
-    from ....base.results.columns import Units
+    from ....base.results import Features, Raster, Table, Units
 
 _MOST_ROWS = 8
 _MOST_COLUMNS = 12

@@ -10,7 +10,7 @@ import numpy as np
 from ....base.checks import as_floats, as_number
 from ....base.errors import LinesError, OptionError
 from ....base.sentences import height
-from ....tin.constraints.polygons import gather_rings_of_regions
+from ....tin.constraints import gather_rings_of_regions
 
 if TYPE_CHECKING:
     from ....base.arrays import Float64Array

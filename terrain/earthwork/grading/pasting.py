@@ -16,7 +16,7 @@ from ....base.progress import Progress
 from ....base.sentences import coordinate
 from ....tin import Breakline, Survey, triangulate
 from ....tin.building import join_columns
-from ....tin.constraints.clipping import in_rings
+from ....tin.constraints import in_rings
 from ....tin.topology import edge_keys, mark_corners
 from ....tin.triangulation.illegal_edges import mark_illegal_edges
 from .seams import Seam, arrange_rings, fills_hull, find_area, find_sides, measure_tolerance

@@ -8,7 +8,7 @@ import numpy as np
 
 from ....base.progress import Progress
 from ....tin import Breakline
-from ....tin.constraints.clipping import in_rings
+from ....tin.constraints import in_rings
 from ....tin.topology import edge_keys
 from ....tin.triangulation.illegal_edges import mark_illegal_edges
 

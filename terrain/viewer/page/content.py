@@ -12,8 +12,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from ....base.errors import OptionError
-from ....base.georeference import label_axes
-from ....base.georeference.units import find_ellipsoid
+from ....base.georeference import find_ellipsoid, label_axes
 from ....base.sentences import counted
 from ...drawing import (
     LINE_STYLES,
@@ -27,7 +26,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
     from ....base.arrays import Float64Array, Int64Array
-    from ....base.georeference.units import Ground
+    from ....base.georeference import Ground
     from ....base.policies import Tint
     from ....tin import TIN, Survey
     from ..ortho import Ortho

@@ -1,8 +1,5 @@
 """What products of a TIN are returned as: features, rasters and tables."""
 
-from .features import Features
-from .gridded import locate_centers
-from .raster import Raster
-from .table import Table
+from ..lazy import lazy_names
 
-__all__ = ["Features", "Raster", "Table", "locate_centers"]
+__getattr__, __dir__, __all__ = lazy_names(__name__)

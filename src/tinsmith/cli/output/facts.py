@@ -10,7 +10,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping
     from pathlib import Path
 
-    from ...base.results.columns import Units
+    from ...base.results import Units
     from ...terrain import Features
     from ...tin import TIN
     from .console import Row
@@ -84,7 +84,7 @@ def list_rows(columns: Mapping[str, Any]) -> list[dict[str, Any]]:
 
 def name_units(units: Units, names: Iterable[str] | None = None) -> dict[str, str]:
     """Return the names of units, by column: of all columns that have one, or of those named."""
-    from ...base.results.columns import unit_text
+    from ...base.results import unit_text
 
     return {name: unit_text(units, name) for name in (units if names is None else names)}
 

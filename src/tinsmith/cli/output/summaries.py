@@ -10,7 +10,7 @@ import numpy as np
 from ...base.crs import assume_elevation_unit
 from ...base.georeference import find_axes
 from ...base.sentences import counted
-from ...io.reprojection.transformation import is_geographic, length_unit
+from ...io.reprojection import is_geographic, length_unit
 from ...terrain import slope
 from ...terrain.surface import measure_areas
 from ...tin import TIN, Bounds, Survey, quality

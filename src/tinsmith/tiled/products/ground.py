@@ -25,8 +25,7 @@ from ...terrain.ground_filter import (
     find_units,
     require_candidates,
 )
-from ...terrain.parts import are_owned
-from ...terrain.parts.ground import GroundWindow, choose_reach
+from ...terrain.parts import GroundWindow, are_owned, choose_reach
 from ..chunks import ROWS_OF_A_FILE
 from ..labelled import GroundTiles, name_files
 from ..running import Fingerprint, Record, Run, hash_file

@@ -19,7 +19,7 @@ from ...terrain.gridding import (
     describe_smooth,
     list_units,
 )
-from ...terrain.parts.rasters import (
+from ...terrain.parts import (
     RasterOptions,
     compute_block,
     count_rings,

@@ -13,7 +13,7 @@ from typing import TypedDict
 from ...base.atomic import as_path
 from ...base.checks import as_flag, as_number, require_count
 from ...base.errors import OptionError
-from ...io.isolated.limits import measure_free_memory
+from ...io.isolated import measure_free_memory
 from ...tin.validation import available_cores
 from .executors import Processes, connect_to_dask
 from .workers import Phase, Status

@@ -13,8 +13,7 @@ from ...command import command
 from ...job import Job, surface_options
 from ...option_groups import alignment_option, read_axis
 from ...options import CONSOLE, WRITING
-from ...output import Facts
-from ...output.failures import Failure
+from ...output import Facts, Failure
 from ...parameters import crs_option, file_option, input_file, number_option, output_option
 from ...paths import Named
 
@@ -81,7 +80,7 @@ def _make_table(road: Alignment, points_file: Path | None, asked: dict[str, Any]
 
 def _find_stations(road: Alignment, path: Path) -> Table:
     """Return the points of a file with their stations and offsets as further columns."""
-    from ....io.delimited.query_points import read_query_points
+    from ....io.delimited import read_query_points
 
     points = read_query_points(path, crs=road.crs)
     if points.is_degrees:

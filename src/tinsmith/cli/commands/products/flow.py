@@ -69,7 +69,7 @@ def flow(file: Path, find: FlowProduct, job: Job, **asked: Any) -> None:
       tinsmith flow site.ply --find paths --from 752700 4024300 -o path.geojson
       tinsmith flow site.ply --find catchments --fill-depressions -o basins.gpkg
     """
-    from ....base.results.table import tabulate_columns
+    from ....base.results import tabulate_columns
 
     _require_fitting(find, asked)
     inputs = job.list_inputs(file, more=name_features(asked["points"], "the file of --points"))

@@ -26,7 +26,7 @@ def hillshade(file: Path, job: Job, **asked: Any) -> None:
       tinsmith hillshade sample_data/site_survey.csv --crs EPSG:32616 --spacing 0.5 -o shade.tif
     """
     from .... import terrain
-    from ...output.summaries import describe_raster_size
+    from ...output import describe_raster_size
 
     planned = job.plan(job.list_inputs(file), "Raster")
     tin = job.read_tin(file)

@@ -12,15 +12,14 @@ from ....base.policies import Extrapolation, InterpolationMethod
 from ....base.sentences import counted
 from ...command import command
 from ...job import Job
-from ...output import Facts, mesh_counts
-from ...output.failures import Failure
+from ...output import Facts, Failure, mesh_counts
 from ...parameters import choice_option, crs_option, file_option, input_file, output_files
 from ...paths import Named
 from ...tiling import choose_tiles, compute_tiles, describe_points, tiled_options
 
 if TYPE_CHECKING:
     from ....base.crs import CRS
-    from ....io.delimited.query_points import QueryPoints
+    from ....io.delimited import QueryPoints
     from ....terrain import Table
     from ....tin import TIN
 
@@ -138,7 +137,7 @@ def _list_facts(file: Path, surface: str, table: Table, asked: dict[str, Any]) -
 def _read_places(path: Path, crs: CRS | None, asked: dict[str, Any]) -> QueryPoints:
     """Read the points of --at, in the CRS of the surface."""
     from ....base.crs import CRS
-    from ....io.delimited.query_points import read_query_points
+    from ....io.delimited import read_query_points
 
     given, column = asked["at_crs"], asked["column"]
     points = read_query_points(

@@ -12,8 +12,7 @@ from ...command import command
 from ...job import Job, name_features, surface_options
 from ...option_groups import sheet_options
 from ...options import CONSOLE, READING, TRIANGULATING
-from ...output import Facts
-from ...output.failures import note_written
+from ...output import Facts, note_written
 from ...parameters import file_option, input_file, number_option, output_option
 from ...paths import Named, make_title, require_separate
 from ...product_options import product_options

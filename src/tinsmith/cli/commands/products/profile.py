@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from ....terrain import Features, Table
     from ....tiled.cloud import TiledPoints
     from ....tin import TIN
-    from ...output.console import Row
+    from ...output import Row
     from ...outputs import Products
 
 Pair = tuple[float, float]

@@ -55,7 +55,7 @@ def raster(file: Path, spacing: float | None, like: Path | None, job: Job, **ask
         --spacing 0.5 -o site.tif
     """
     from ....io.raster.cells import read_cells
-    from ...output.summaries import describe_raster_size
+    from ...output import describe_raster_size
 
     if (spacing is None) == (like is None):
         raise click.UsageError("One of --spacing and --like is needed.")

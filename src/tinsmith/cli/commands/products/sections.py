@@ -22,7 +22,7 @@ from ...product_options import product_options
 
 if TYPE_CHECKING:
     from ....terrain import SectionSheets, Table
-    from ...output.console import Row
+    from ...output import Row
     from ...outputs import Products
 
 _OF_SHEETS = ("scale", "paper", "orientation", "title", "date", "ground_unit", "exaggeration")

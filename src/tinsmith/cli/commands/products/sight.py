@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
     from ....terrain import Features
     from ....tin import TIN
-    from ...output.console import Row
+    from ...output import Row
 
 _SHOWN = 12
 
@@ -62,7 +62,7 @@ def sight(file: Path, job: Job, **asked: Any) -> None:
       tinsmith sight site.ply --from 752700 4024300 --eye-height 1.7 -o viewshed.gpkg
       tinsmith sight site.ply --from 752700 4024300 --to 752800 4024300 -o line.csv
     """
-    from ....base.results.table import tabulate_columns
+    from ....base.results import tabulate_columns
 
     _require_fitting(asked)
     more = name_features(asked["eyes"], "the file of --eye")

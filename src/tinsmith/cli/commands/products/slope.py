@@ -120,7 +120,7 @@ def _classify(
     job: Job,
 ) -> None:
     """Write classes, and tell of them and of the statistics."""
-    from ....base.results.table import tabulate_columns
+    from ....base.results import tabulate_columns
     from ....terrain import aspect_classes, slope_classes, slope_statistics
 
     with job.step("Classifying"):

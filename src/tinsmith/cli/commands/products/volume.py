@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
     from ....terrain import Table
     from ....tiled.cloud import TiledPoints
-    from ...output.console import Row
+    from ...output import Row
     from ...outputs import Products
 
 _SHOWN = 12

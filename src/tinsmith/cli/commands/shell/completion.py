@@ -5,7 +5,7 @@ from __future__ import annotations
 import click
 
 from ...command import command
-from ...output.console import emit_text
+from ...output import emit_text
 from ...parameters import Words
 
 _VARIABLE = "_TINSMITH_COMPLETE"

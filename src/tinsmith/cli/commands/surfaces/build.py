@@ -11,8 +11,7 @@ import click
 from ....base.sentences import counted
 from ...command import command
 from ...job import Job
-from ...output import Facts, describe_counts
-from ...output.failures import Failure
+from ...output import Facts, Failure, describe_counts
 from ...parameters import input_files, number_option, output_files, report_option
 from ...paths import describe_inputs, name_files
 from ...tiling import (
@@ -27,8 +26,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from ....tin import TIN, Survey
-    from ...output.blunder_summaries import Suspects
-    from ...output.console import Row
+    from ...output import Row, Suspects
 
 
 @command
@@ -88,9 +86,7 @@ def build(
       tinsmith build --from-contours contours.gpkg --z-field elevation -o hills.gpkg
     """
     from ....terrain import mend_flats
-    from ...output.blunder_summaries import describe_suspects, report_suspects
-    from ...output.console import format_json
-    from ...output.summaries import describe_report
+    from ...output import describe_report, describe_suspects, format_json, report_suspects
     from ...outputs import write_text
 
     given = {"tolerance": tolerance, "node_points": node_points}
@@ -209,7 +205,7 @@ def _insert(base: TIN, survey: Survey, path: Path, job: Job) -> TIN:
 def _find_blunders(tin: TIN, job: Job, *, drop: bool) -> tuple[TIN, Suspects]:
     """Look for points that look like blunders, and leave them out where that is asked for."""
     from ....terrain.inspection.findings import blunders, drop_blunders, screen
-    from ...output.blunder_summaries import Suspects
+    from ...output import Suspects
 
     with job.step("Checking points") as progress:
         if not drop:
@@ -230,7 +226,7 @@ def _summarise_flats(tin: TIN, *, is_mended: bool) -> list[Row]:
 
 
 def _list_inserted(points: Sequence[Path], survey: Survey, base: TIN, tin: TIN) -> Facts:
-    from ...output.summaries import describe_survey, summarise_crs, summarise_reading
+    from ...output import describe_survey, summarise_crs, summarise_reading
 
     facts = Facts(input=describe_inputs(points), survey=lambda: describe_survey(survey))
     facts.add("Read", f"a TIN of {describe_counts(base)} from {name_files(points[:1])}")
@@ -245,12 +241,13 @@ def _list_inserted(points: Sequence[Path], survey: Survey, base: TIN, tin: TIN) 
 
 
 def _list_facts(points: Sequence[Path], survey: Survey, tin: TIN, rows: list[Row]) -> Facts:
-    from ...output.line_summaries import count_lines, summarise_lines
-    from ...output.summaries import (
+    from ...output import (
+        count_lines,
         describe_survey,
         describe_tin,
         summarise_crs,
         summarise_extent,
+        summarise_lines,
         summarise_merges,
         summarise_reading,
     )

@@ -11,8 +11,7 @@ from ....base.sentences import counted
 from ...command import command
 from ...job import Job, surface_options
 from ...options import CONSOLE, READING
-from ...output import Facts
-from ...output.failures import Failure
+from ...output import Facts, Failure
 from ...parameters import input_file, number_option, picture_option
 from ...paths import make_title, name_file
 

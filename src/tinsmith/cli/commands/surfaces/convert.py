@@ -10,8 +10,7 @@ from ...command import file_command
 from ...job import Job, surface_options
 from ...option_groups import GROUND_COORDINATES, tell_factor
 from ...options import CONSOLE, READING, WRITING
-from ...output import Facts
-from ...output.failures import Failure
+from ...output import Facts, Failure
 from ...paths import name_file, split_output
 
 if TYPE_CHECKING:
@@ -34,7 +33,7 @@ def convert(file: Path, job: Job) -> None:
       tinsmith convert sample_data/site_survey.csv --crs EPSG:32616 --to-ground -o on_ground.csv
     """
     from ....tin import Survey
-    from ...output.summaries import note_assumed_unit, summarise_reading
+    from ...output import note_assumed_unit, summarise_reading
     from ...outputs import describe_file
 
     planned = job.plan(

@@ -13,8 +13,7 @@ from ....base.sentences import counted
 from ...command import command
 from ...edit_tables import read_edit_table
 from ...job import Job, open_standard_input, surface_options
-from ...output import Facts, mesh_counts
-from ...output.failures import Failure
+from ...output import Facts, Failure, mesh_counts
 from ...parameters import input_file, output_files, report_option
 from ...paths import INPUT, STANDARD, Named, name_file
 
@@ -68,7 +67,7 @@ def edit(file: Path, script: Path | None, undo: int | None, report: Path | None,
       remove_breakline,,,,,,,0
     """
     from ....tin.editing.history import apply_edits
-    from ...output.console import format_json
+    from ...output import format_json
     from ...outputs import write_text
 
     if script is None and undo is None:

@@ -12,7 +12,7 @@ from ...command import command
 from ...format_options import list_flags_of
 from ...job import Job, surface_options
 from ...options import CONSOLE
-from ...output.console import format_json
+from ...output import format_json
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -10,8 +10,7 @@ import click
 from ....base.sentences import counted
 from ...command import file_command
 from ...job import Job, name_features, surface_options
-from ...output import Facts, list_rows, mesh_counts, name_units
-from ...output.failures import Failure
+from ...output import Facts, Failure, list_rows, mesh_counts, name_units
 from ...parameters import file_option
 from ...product_options import product_options
 

@@ -66,7 +66,7 @@ def ground(points: tuple[Path, ...], job: Job, **options: Any) -> None:
       tinsmith ground lidar/ -o classified/ --tiles 4
     """
     from ....terrain import ground as find_ground
-    from ...output.summaries import describe_survey, summarise_reading
+    from ...output import describe_survey, summarise_reading
 
     given = {name: options[name] for name in _PARAMETERS.split()}
     given["returns"] = "all" if options["any_return"] else "last"

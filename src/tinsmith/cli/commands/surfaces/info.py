@@ -12,8 +12,7 @@ from ....base.sentences import coordinate, counted
 from ...command import command
 from ...job import Job, surface_options
 from ...options import CODING, CONSOLE, READING
-from ...output import Facts
-from ...output.failures import Failure
+from ...output import Facts, Failure
 from ...parameters import input_files
 from ...paths import OUTPUT, describe_inputs, make_title, name_file, name_files
 from ...tiling import add_plan
@@ -46,7 +45,7 @@ def info(files: tuple[Path, ...], plot: Path | None, job: Job) -> None:
     """
     from ....io.reading import is_folder
     from ....tin import TIN
-    from ...output.summaries import describe_survey, summarise_survey
+    from ...output import describe_survey, summarise_survey
     from ...outputs import require_picture
 
     if plot is not None:
@@ -85,7 +84,7 @@ def info(files: tuple[Path, ...], plot: Path | None, job: Job) -> None:
 
 def _list_facts(tin: TIN, file: Path, plot: Path | None, job: Job) -> Facts:
     """Return what is known of a TIN; write the histograms, whole or not at all."""
-    from ...output.summaries import (
+    from ...output import (
         describe_tin,
         find_symbols,
         measure_quality,

@@ -39,7 +39,7 @@ def inspect(points: tuple[Path, ...], title: str | None, job: Job) -> None:
       tinsmith inspect sample_data/site_survey.csv --codes -o suspects.gpkg -o suspects.png
     """
     from ....terrain import blunder_map, blunders
-    from ...output.blunder_summaries import count_reasons, list_findings
+    from ...output import count_reasons, list_findings
 
     planned = job.plan(job.list_inputs(*points), "Table", "Features", "picture")
     tin = job.read_tin(*points)

@@ -8,8 +8,7 @@ from typing import Any
 from ....base.sentences import counted
 from ...command import file_command, name_flags
 from ...job import Job, surface_options
-from ...output import Facts, mesh_counts
-from ...output.failures import Failure, refuse_option
+from ...output import Facts, Failure, mesh_counts, refuse_option
 from ...parameters import number_option
 from ...product_options import product_options
 
@@ -37,11 +36,11 @@ def refine(file: Path, max_side: float | None, job: Job, **limits: Any) -> None:
       tinsmith refine sample_data/site_survey.csv --codes --max-area 20 -o site.msh -o site.vtu
     """
     from ....base.errors import OptionError, TinsmithError
-    from ....io.reprojection.transformation import is_geographic
+    from ....io.reprojection import is_geographic
     from ....tin import quality
     from ....tin import refine as refine_tin
-    from ....tin.meshing.flips import describe_flips
-    from ...output.summaries import describe_tin
+    from ....tin.meshing import describe_flips
+    from ...output import describe_tin
 
     planned = job.plan(job.list_inputs(file), "TIN")
     tin = job.read_tin(file)

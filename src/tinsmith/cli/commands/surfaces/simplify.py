@@ -10,8 +10,7 @@ import click
 from ....base.sentences import coordinate, counted
 from ...command import file_command
 from ...job import Job
-from ...output import Facts, mesh_counts
-from ...output.failures import Failure, note_written
+from ...output import Facts, Failure, mesh_counts, note_written
 from ...parameters import file_option
 from ...paths import INPUT, Named
 from ...product_options import product_options
@@ -68,7 +67,7 @@ def simplify(
     """
     from ....terrain import simplify as simplify_surface
     from ....tin import TIN
-    from ...output.line_summaries import summarise_news
+    from ...output import summarise_news
 
     if (tolerance is None) == (points is None):
         wrong = "give one of them" if points is None else "not both"
@@ -141,7 +140,7 @@ def _find_kept(surface: TIN | Raster, path: Path, job: Job) -> AnyArray:
     """
     import numpy as np
 
-    from ....base.results.gridded import locate_centers
+    from ....base.results import locate_centers
     from ....tin import TIN
 
     places = job.read(path).points[:, :2]

@@ -11,8 +11,7 @@ import click
 from ...command import command
 from ...job import Job, surface_options
 from ...options import CONSOLE, READING, TRIANGULATING
-from ...output import Facts
-from ...output.failures import note_written, report_warning
+from ...output import Facts, note_written, report_warning
 from ...parameters import file_option, input_files, parsed, picture_option
 from ...paths import INPUT, Named, describe_inputs, make_title
 from ...product_options import product_options

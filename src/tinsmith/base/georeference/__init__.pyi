@@ -1,0 +1,20 @@
+# Names that other packages use, each with the module that has it.
+from .agreement import PlaneUnits as PlaneUnits
+from .agreement import Reference as Reference
+from .agreement import Referenced as Referenced
+from .agreement import agree as agree
+from .agreement import describe_unknown as describe_unknown
+from .agreement import find_plane_units as find_plane_units
+from .agreement import require_same_crs as require_same_crs
+from .axes import Axes as Axes
+from .axes import DrawnCRS as DrawnCRS
+from .axes import Label as Label
+from .axes import find_axes as find_axes
+from .axes import gives_northing_first as gives_northing_first
+from .axes import label_axes as label_axes
+from .axes import turn_into_drawing as turn_into_drawing
+from .axes import undo_north_up as undo_north_up
+from .units import Ground as Ground
+from .units import find_ellipsoid as find_ellipsoid
+from .units import find_ground as find_ground
+from .units import find_scales as find_scales

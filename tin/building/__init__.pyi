@@ -1,0 +1,20 @@
+# Names that other packages use, each with the module that has it.
+from .assembly import assemble as assemble
+from .assembly import find_ring_groups as find_ring_groups
+from .attributes import Attributes as Attributes
+from .attributes import as_columns as as_columns
+from .attributes import as_row_attributes as as_row_attributes
+from .attributes import join_columns as join_columns
+from .duplicates import choose_elevations as choose_elevations
+from .duplicates import merge_rows as merge_rows
+from .inputs import BuildInputs as BuildInputs
+from .inputs import gather_inputs as gather_inputs
+from .moving import move_inputs as move_inputs
+from .moving import move_points as move_points
+from .moving import require_move as require_move
+from .options import BuildOptions as BuildOptions
+from .reference import find_crs as find_crs
+from .reference import require_crs as require_crs
+from .survey import Survey as Survey
+from .survey_moving import move_survey as move_survey
+from .version import Version as Version

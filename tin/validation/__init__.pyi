@@ -1,0 +1,26 @@
+# Names that other packages use, each with the module that has it.
+from .geometries import Geometries as Geometries
+from .geometries import Geometry as Geometry
+from .geometries import find_geometries as find_geometries
+from .geometries import is_plain as is_plain
+from .points import SHOWN as SHOWN
+from .points import as_elevations as as_elevations
+from .points import as_masked_points as as_masked_points
+from .points import as_pairs as as_pairs
+from .points import as_places as as_places
+from .points import as_points as as_points
+from .points import as_xy as as_xy
+from .points import clean_points as clean_points
+from .points import require_exact_range as require_exact_range
+from .points import require_three as require_three
+from .tables import Table as Table
+from .tables import as_table as as_table
+from .threads import available_cores as available_cores
+from .threads import thread_count as thread_count
+from .triangles import as_flags as as_flags
+from .triangles import as_triangles as as_triangles
+from .triangles import turn_counter_clockwise as turn_counter_clockwise
+from .vertices import as_rows as as_rows
+from .vertices import as_vertex as as_vertex
+from .vertices import as_vertex_array as as_vertex_array
+from .vertices import as_vertex_pairs as as_vertex_pairs
