@@ -103,7 +103,7 @@ def read_alignment(
             from .cad.dxf import alignment_reading as drawings
 
             return drawings.read_alignment(file, layer, **given)
-        from .cad.landxml.alignment_reading import read_alignment as read_landxml
+        from .cad.landxml import read_alignment as read_landxml
 
         return read_landxml(file, name, **given)
 
@@ -129,7 +129,7 @@ def _read_polyline(
     file: Path, layer: str | None, crs: CrsLike | None, elevation_unit: UnitLike | None
 ) -> Alignment:
     """Return the only line of a vector file; its elevations are left aside."""
-    from .vector.reading import read_plain_lines
+    from .vector import read_plain_lines
 
     lines, own, notes = read_plain_lines(file, layer=layer, crs=crs)
     if len(lines) != 1:

@@ -15,8 +15,7 @@ from .delimited import QueryPoints, parse_name, read_query_points
 from .door import names_its_file
 from .reading import read
 from .registry import known_formats, list_claims
-from .vector.geometries import read_geometries
-from .vector.survey_lines import split_layer
+from .vector import read_geometries, split_layer
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

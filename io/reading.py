@@ -36,9 +36,9 @@ from .isolated import (
     unpack,
     unpack_member,
 )
-from .lidar.signatures import is_virtual_cloud, list_named_files
-from .lidar.signatures import list_tiles as list_lidar_tiles
-from .raster.virtual import is_virtual
+from .lidar import is_virtual_cloud, list_named_files
+from .lidar import list_tiles as list_lidar_tiles
+from .raster import is_virtual
 from .registry import Format, lookup, require_options, signatures, takes_progress
 from .reprojection import checking_crs
 
@@ -738,7 +738,7 @@ def _is_table(head: bytes) -> bool:
 
 
 def _is_gdal_raster(path: Path) -> bool:
-    from .raster.dem import is_raster
+    from .raster import is_raster
 
     try:
         return is_raster(path)

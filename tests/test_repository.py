@@ -238,12 +238,12 @@ def test_folders_can_be_taken_in_at_a_glance():
         most = LARGER_FOLDERS.get(folder, MOST_ENTRIES)
         assert len(names - stubs) <= most, f"{folder}: {sorted(names)}"
     for folder, most in LARGER_FOLDERS.items():
-        assert MOST_ENTRIES < len(entries[folder]) <= most, folder
+        assert MOST_ENTRIES < len(entries[folder] - {"__init__.pyi"}) <= most, folder
 
 
 MOST_SPLINTERS = 40
 """Private functions called once with more than four positional parameters: may only fall."""
-MOST_PAST_A_FACE = 110
+MOST_PAST_A_FACE = 38
 """Imports of a module within another package, not of what that package lists: may only fall."""
 
 

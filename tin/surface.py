@@ -29,8 +29,7 @@ from .building import (
     require_move,
 )
 from .constraints import Lines
-from .editing.editable import Editable
-from .editing.session import Origin
+from .editing import Editable, Origin
 from .report import LEFT_OUT, Report
 from .triangulation import Triangulation
 from .validation import (
@@ -56,7 +55,7 @@ if TYPE_CHECKING:
     from ..base.types import Bounds, PointsLike
     from .building import BuildInputs
     from .report import Edit
-    from .voronoi.diagram import Voronoi
+    from .voronoi import Voronoi
 
 
 class Surface:
@@ -738,7 +737,7 @@ class Surface:
         >>> tin.voronoi(pad=0).areas
         array([4., 6., 6.])
         """
-        from .voronoi.diagram import divide_plane
+        from .voronoi import divide_plane
 
         return replace(divide_plane(self.points, boundary=boundary, pad=pad), crs=self.crs)
 

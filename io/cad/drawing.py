@@ -17,7 +17,7 @@ from ...tin import Breakline, Surface, Survey, Water
 from ...tin.constraints import as_ring, as_sequence, gather_rings_of_regions
 from ...tin.screening import describe_elevations
 from ...tin.topology import find_offsets
-from ..mesh.common import Reference, require_own_crs
+from ..mesh import Reference, require_own_crs
 from ..reprojection import Placed, place
 from .surfaces import Line, Mesh, make_tin_with_lines, merge_equal_points
 

@@ -11,14 +11,14 @@ from ...base.sentences import counted
 from ...tin import TIN
 from ...tin.constraints import Lines
 from ...tin.topology import directed_edges, edge_keys, find_offsets, mark_corners
-from ..mesh.common import add_notes, join_places, make_tin
+from ..mesh import add_notes, join_places, make_tin
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from ...base.arrays import BoolArray, Float64Array, Int64Array
     from ...base.policies import FacePolicy
-    from ..mesh.common import Reference
+    from ..mesh import Reference
 
 _KINDS = get_args(LineKind)
 _SAME_PLACE = 1e-6

@@ -16,7 +16,7 @@ from ...base.notes import warn
 from ...base.progress import Progress
 from ...base.sentences import FILE, coordinate
 from ...tin import TIN, Survey
-from ..mesh.common import require_writable
+from ..mesh import require_writable
 from ..registry import warn_of_lost_attributes
 from ..reprojection import require_kept
 

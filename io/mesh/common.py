@@ -14,7 +14,7 @@ from ...base.crs import CRS, Unit
 from ...base.errors import CrsError, FormatError, OptionError, PointsError, ReadError
 from ...base.sentences import FILE, counted, height
 from ...tin import TIN, Surface, Survey
-from ...tin.checking.overlaps import describe_oddities
+from ...tin.checking import describe_oddities
 from ...tin.screening import find_suspect_elevations
 from ...tin.topology import edge_keys
 from ..reprojection import look_at_crs, settle_unit

@@ -16,7 +16,7 @@ from ...base.products import product
 from ...base.sentences import counted, name_file
 from ...terrain.drawing import choose_origin
 from ...tin import TIN
-from ...tin.checking.overlaps import describe_oddities
+from ...tin.checking import describe_oddities
 from .common import (
     add_notes,
     choose_reference,

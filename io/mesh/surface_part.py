@@ -11,7 +11,7 @@ from ...base import optional
 from ...base.errors import PointsError, choice
 from ...base.policies import FacePolicy
 from ...base.sentences import counted, inflect
-from ...tin.checking.overlaps import find_overlap
+from ...tin.checking import find_overlap
 from ...tin.predicates import columns, orientation
 from ...tin.topology import find_offsets
 from ...tin.validation import as_points, as_triangles

@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING
 
 from ...base.errors import ReadError
 from ...base.notes import warn
-from ...terrain.viewer.ortho import Ortho
-from ..raster.ortho import as_picture_path, read_ortho
+from ...terrain.viewer import Ortho
+from ..raster import as_picture_path, read_ortho
 from .common import read_content
 
 if TYPE_CHECKING:

@@ -17,7 +17,7 @@ from ...base import optional
 from ...base.atomic import replacing_path
 from ...base.errors import ReadError, WriteError
 from ...base.sentences import FILE
-from ...terrain.relief.gradients import aspect, slope
+from ...terrain.relief import aspect, slope
 from ..isolated import run_isolated
 from . import common
 from .common import Mesh, mesh_reader

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from ... import terrain
 from ...base.atomic import as_path
 from ...base.crs import CRS
-from ...terrain.gridding.grids import Cells, to_grid
+from ...terrain.gridding import Cells, to_grid
 from ..door import names_its_file
 from ..isolated import open_ordinary_file, require_local, require_readable
 from .dem import read_georeference

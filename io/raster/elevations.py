@@ -12,7 +12,7 @@ from ...base.crs import CRS, Unit
 from ...base.errors import OptionError, ReadError
 from ...base.results import Raster
 from ...base.sentences import FILE
-from ...terrain.gridding.grids import as_parts, to_grid
+from ...terrain.gridding import as_parts, to_grid
 from ...tin.screening import parse_nodata
 from ..door import names_its_file
 from ..isolated import is_pipe, require_local, require_readable

@@ -14,7 +14,7 @@ from ...base.crs import CRS
 from ...base.errors import OptionError, ReadError
 from ...base.notes import warn
 from ...base.sentences import FILE
-from ...terrain.viewer.ortho import Ortho
+from ...terrain.viewer import Ortho
 from ..isolated import Limits, choose_limits, require_local, run_isolated
 from ..reprojection import reproject
 

@@ -20,8 +20,7 @@ from ...base.crs import CRS
 from ...base.errors import OptionError, ReadError
 from ...base.sentences import FILE, counted
 from ...tin import TIN
-from ..cad.dxf.model_space import ModelSpace, read_model_space
-from ..cad.dxf.names import ELEVATION_PROPERTY, UNKNOWN
+from ..cad.dxf import ELEVATION_PROPERTY, UNKNOWN, ModelSpace, read_model_space
 from ..cad.signatures import is_dxf, is_landxml
 from ..isolated import (
     choose_limits,
@@ -139,7 +138,7 @@ def make_layer(
 
 
 def _read_design(path: Path, layer: str | None, where: str | None) -> Layer:
-    from ..cad.landxml.reading import read
+    from ..cad.landxml import read
 
     if where is not None:
         raise OptionError("where", where, "None for LandXML, whose lines have no columns")

@@ -18,7 +18,7 @@ from ...base.sentences import FILE, counted
 from ...tin import TIN, Breakline, Survey
 from ...tin.screening import describe_elevations, parse_nodata
 from ...tin.topology import find_offsets
-from ..mesh.common import Reference, join_places, make_tin
+from ..mesh import Reference, join_places, make_tin
 from ..registry import taking
 from ..reprojection import place, settle_unit
 from .elevations import find_elevation_unit, find_elevations

@@ -10,7 +10,7 @@ from ...base.errors import FormatError, WriteError
 from ...base.notes import warn
 from ...base.results import Features
 from ...base.sentences import FILE, counted
-from ..mesh.common import require_tin
+from ..mesh import require_tin
 from ..registry import replacing_data_set
 from .ogr import write_layer
 from .surface_features import make_features, make_whole_surface

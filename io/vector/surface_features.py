@@ -11,11 +11,11 @@ from ...base.errors import FormatError, choice
 from ...base.policies import FeatureKind
 from ...base.results import Features
 from ...terrain.drawing import EDGE_KINDS, find_line_edges
-from ...terrain.relief.gradients import aspect, slope
+from ...terrain.relief import aspect, slope
 from ...terrain.surface import measure_areas, measure_ring_area
 from ...tin import TIN, Survey
 from ...tin.topology import edge_keys, edges_at, find_offsets
-from ..mesh.common import require_writable
+from ..mesh import require_writable
 
 if TYPE_CHECKING:
     from collections.abc import Callable

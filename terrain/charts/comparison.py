@@ -8,13 +8,13 @@ import numpy as np
 
 from ...base.checks import require_type
 from ...base.sentences import counted
-from ...tin.paper.comparison import Comparison
+from ...tin.paper import Comparison
 from ..drawing import TRIANGULATIONS, parse_title
 from .figures import INK, start_panels
 
 if TYPE_CHECKING:
     from ...base.arrays import Float64Array, Int32Array
-    from ...tin.paper.comparison import Outcome
+    from ...tin.paper import Outcome
 
 _PURPOSE = "A picture of a comparison"
 _VEIL = 0.22

@@ -12,9 +12,7 @@ from ...base.checks import require_tin, require_type
 from ...tin import TIN, Bounds
 from ..drawing import draw_north_up, palette, parse_title, round_down
 from ..earthwork import Difference
-from ..gridding import rasterize
-from ..gridding.grids import cover
-from ..gridding.shading import hillshade
+from ..gridding import cover, hillshade, rasterize
 from .figures import INK, picture
 from .maps import PIXELS, draw_cells, draw_scale, draw_shade, start_map
 

@@ -9,7 +9,7 @@ import numpy as np
 from ...base import optional
 from ...base.checks import require_tin
 from ..drawing import palette, parse_title, require_features
-from ..isolines.labels import contour_labels
+from ..isolines import contour_labels
 from .figures import picture
 from .maps import draw_polygons, draw_scale, draw_shade, shade_for_map, start_map
 

@@ -11,7 +11,7 @@ import numpy as np
 from ...base import optional
 from ...base.georeference import find_ground, label_axes
 from ..drawing import choose_ticks
-from ..gridding.shading import hillshade
+from ..gridding import hillshade
 from .figures import INK, color_frame, start_figure, write_title
 
 if TYPE_CHECKING:

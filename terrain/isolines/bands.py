@@ -95,10 +95,10 @@ def contour_bands(
     if notes or not is_whole(tin, parts):
         parts, said = rebuild_wrong_bands(tin, chosen.values, parts)
         require_whole(tin, parts)
-    return as_features(parts, chosen, tin.crs, tin.elevation_unit, (*notes, *said))
+    return as_band_features(parts, chosen, tin.crs, tin.elevation_unit, (*notes, *said))
 
 
-def as_features(
+def as_band_features(
     parts: PolygonParts,
     chosen: Levels,
     crs: CRS | None,

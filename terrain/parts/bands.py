@@ -12,8 +12,7 @@ import numpy as np
 
 from ...base.errors import PointsError
 from .. import _kernel
-from ..isolines.bands import as_features
-from ..isolines.rebuilding import measure_off
+from ..isolines import as_band_features, measure_off
 from ..surface import (
     PolygonParts,
     find_slivers,
@@ -145,7 +144,7 @@ def join(parts: Sequence[BandPart], options: BandOptions) -> Features:
     area = float(_kernel.sum_rows(np.concatenate([part.areas for part in parts], axis=1))[0])
     if notes or not has_area(found, area):
         _require_right(found, np.sum([part.under for part in parts], axis=0), area, options)
-    return as_features(found, options.levels, options.crs, options.elevation_unit, notes)
+    return as_band_features(found, options.levels, options.crs, options.elevation_unit, notes)
 
 
 def _require_right(

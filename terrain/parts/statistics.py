@@ -6,8 +6,14 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from ..relief import PERCENTILES, name_percentiles, select_weighted_percentiles
-from ..relief.statistics import list_terms, merge_terms, summarise
+from ..relief import (
+    PERCENTILES,
+    list_terms,
+    merge_terms,
+    name_percentiles,
+    select_weighted_percentiles,
+    summarise,
+)
 from ..surface import compute_normals, measure_slopes
 from .surfaces import are_owned_triangles, as_surface
 

@@ -12,7 +12,7 @@ import numpy as np
 
 from ...base.types import Bounds
 from .. import _kernel
-from ..earthwork.volumes import as_table, describe_overlaps, subtract
+from ..earthwork import as_table, describe_overlaps, subtract
 from ..surface import Pieces, Surface, cut_pieces
 from .surfaces import are_owned_triangles
 
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from ...base.arrays import BoolArray, Float64Array
     from ...base.results import Table
     from ...tin.tiling import LocalTriangulation
-    from ..earthwork.planes import Plane
+    from ..earthwork import Plane
     from ..surface import Reference
 
 

@@ -14,8 +14,7 @@ from ...base.georeference import label_axes, require_same_crs
 from ...base.sentences import counted
 from ...tin.topology import find_offsets
 from ..drawing import EDGE_KINDS, LineEdges, find_line_edges, join_edges, round_down
-from ..isolines import contours
-from ..isolines.levels import elevation_range
+from ..isolines import contours, elevation_range
 from .clipping import Paths
 from .lettering import clean_text
 

@@ -1,5 +1,5 @@
 """Relief: slope, aspect and light, their classes and statistics, hillshade, curvature."""
 
-from .statistics import PERCENTILES, as_table, name_percentiles, select_weighted_percentiles
+from ...base.lazy import lazy_names
 
-__all__ = ["PERCENTILES", "as_table", "name_percentiles", "select_weighted_percentiles"]
+__getattr__, __dir__, __all__ = lazy_names(__name__)

@@ -1,5 +1,5 @@
 """Preview: a surface in 3D as a page, as a picture or in a window."""
 
-from .presentation import Preview, preview
+from ...base.lazy import lazy_names
 
-__all__ = ["Preview", "preview"]
+__getattr__, __dir__, __all__ = lazy_names(__name__)

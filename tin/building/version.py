@@ -13,8 +13,7 @@ from ...base.types import Frozen
 from .. import topology
 from ..constraints import Lines
 from ..report import Report
-from ..triangulation import Triangulation
-from ..triangulation.interpolator import Interpolator
+from ..triangulation import Interpolator, Triangulation
 from .attributes import find_first_rows
 
 if TYPE_CHECKING:

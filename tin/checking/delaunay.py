@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..predicates import blocks, columns, in_circle
-from ..triangulation.illegal_edges import gather_quadrilaterals, is_against_rule
+from ..triangulation import gather_quadrilaterals, is_against_rule
 
 if TYPE_CHECKING:
     from ..surface import TIN

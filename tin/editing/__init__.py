@@ -1,5 +1,5 @@
 """Changes of a TIN: operations on its inputs, their history, and a mesh changed in place."""
 
-from .accounts import account_for_edits, account_for_removed, renumber_vertices
+from ...base.lazy import lazy_names
 
-__all__ = ["account_for_edits", "account_for_removed", "renumber_vertices"]
+__getattr__, __dir__, __all__ = lazy_names(__name__)

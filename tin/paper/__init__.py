@@ -1,15 +1,5 @@
 """The paper's algorithms of growth, exactly as written: for reference and comparison."""
 
-from .comparison import Comparison, Outcome, compare
-from .growth import Distance, EmptyCircle, Network, improved, original
+from ...base.lazy import lazy_names
 
-__all__ = [
-    "Comparison",
-    "Distance",
-    "EmptyCircle",
-    "Network",
-    "Outcome",
-    "compare",
-    "improved",
-    "original",
-]
+__getattr__, __dir__, __all__ = lazy_names(__name__)

@@ -1,6 +1,5 @@
 """The triangles of a surface, and where things lie among them."""
 
-from .illegal_edges import mark_illegal_edges
-from .triangulation import Triangulation
+from ...base.lazy import lazy_names
 
-__all__ = ["Triangulation", "mark_illegal_edges"]
+__getattr__, __dir__, __all__ = lazy_names(__name__)

@@ -1,6 +1,5 @@
 """The Voronoi diagram of a TIN's vertices: the dual of their Delaunay triangulation."""
 
-from .construction import voronoi
-from .diagram import Voronoi
+from ...base.lazy import lazy_names
 
-__all__ = ["Voronoi", "voronoi"]
+__getattr__, __dir__, __all__ = lazy_names(__name__)

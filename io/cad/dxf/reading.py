@@ -15,7 +15,7 @@ from ....base.errors import ReadError, choice
 from ....base.policies import DrawingContent, FacePolicy, LineKind
 from ....base.sentences import FILE, counted
 from ....tin.topology import find_offsets
-from ...mesh.common import cut_into_fans, join_places
+from ...mesh import cut_into_fans, join_places
 from ..drawing import Drawing
 from ..reference import Declared, Measures, choose_measures
 from ..surfaces import Line, Mesh

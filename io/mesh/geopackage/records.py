@@ -18,7 +18,7 @@ from ....base.records import require, require_fields, require_indices
 from ....tin import topology
 from ....tin.building import BuildInputs, BuildOptions, Version
 from ....tin.constraints import ConstraintTable, Lines, LineSet
-from ....tin.editing.session import Origin
+from ....tin.editing import Origin
 from ....tin.report import Crossings, Edit, Overruled, Report, Simplification, Unmended
 from ....tin.surface import TIN
 from ....tin.triangulation import Triangulation

@@ -13,7 +13,7 @@ import numpy as np
 from ....base.checks import as_flag
 from ....base.errors import CrsError, WriteError
 from ....base.sentences import FILE
-from ....terrain.relief.gradients import aspect, slope
+from ....terrain.relief import aspect, slope
 from ..common import format_unit, require_tin
 from .containers import Placing, adding_layers
 from .pages import Column, fill_table, make_blobs, make_integers, make_reals

@@ -300,9 +300,7 @@ class Job:
         of one line or polygon, as it is asked.
         """
         from ..io.places import read_places
-        from ..io.vector.geometries import read_geometries
-        from ..io.vector.point_tables import is_point_table
-        from ..io.vector.survey_lines import split_layer
+        from ..io.vector import is_point_table, read_geometries, split_layer
         from ..terrain import Features
 
         path, layer = split_layer(given)
@@ -320,7 +318,7 @@ class Job:
 
 def name_features(path: Path | None, place: str) -> list[Named]:
     """Return a vector file, if one is given, for the list of inputs; ``place`` says where."""
-    from ..io.vector.survey_lines import split_layer
+    from ..io.vector import split_layer
 
     return [] if path is None else [Named(split_layer(path)[0], place)]
 

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ..base.atomic import replacing
-from ..io.lidar.virtual_cloud import NamedFile, write_virtual_cloud
+from ..io.lidar import NamedFile, write_virtual_cloud
 
 if TYPE_CHECKING:
     from ..base.crs import CRS

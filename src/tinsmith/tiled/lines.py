@@ -22,7 +22,7 @@ from ..base.notes import naming_file
 from ..base.sentences import counted
 from ..base.types import Bounds
 from ..io import with_lines
-from ..io.vector.survey_lines import require_near, split_layer
+from ..io.vector import require_near, split_layer
 from ..tin import Survey
 from ..tin.building import BuildOptions, gather_inputs
 from ..tin.constraints import ConstraintTable, LineSet, as_sequence, in_rings

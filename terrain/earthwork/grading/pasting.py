@@ -18,7 +18,7 @@ from ....tin import Breakline, Survey, triangulate
 from ....tin.building import join_columns
 from ....tin.constraints import in_rings
 from ....tin.topology import edge_keys, mark_corners
-from ....tin.triangulation.illegal_edges import mark_illegal_edges
+from ....tin.triangulation import mark_illegal_edges
 from .seams import Seam, arrange_rings, fills_hull, find_area, find_sides, measure_tolerance
 
 if TYPE_CHECKING:

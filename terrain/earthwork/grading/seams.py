@@ -10,7 +10,7 @@ from ....base.progress import Progress
 from ....tin import Breakline
 from ....tin.constraints import in_rings
 from ....tin.topology import edge_keys
-from ....tin.triangulation.illegal_edges import mark_illegal_edges
+from ....tin.triangulation import mark_illegal_edges
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence

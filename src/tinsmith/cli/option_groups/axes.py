@@ -76,6 +76,6 @@ def read_line(path: Path, tin: TIN, elevation_unit: Any, notes: list[str]) -> An
 
 
 def _split(path: Path) -> tuple[Path, str | None]:
-    from ...io.vector.survey_lines import split_layer
+    from ...io.vector import split_layer
 
     return split_layer(path)

@@ -62,7 +62,7 @@ class Suspects(NamedTuple):
 
 def report_suspects(found: Suspects) -> list[Row]:
     """Return the lines of a build on what looks like a blunder, but for what is doubtful."""
-    from ...terrain.inspection.findings import list_wrong_rows
+    from ...terrain.inspection import list_wrong_rows
 
     table = found.table
     rows = list_wrong_rows(table)

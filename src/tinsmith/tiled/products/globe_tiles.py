@@ -22,7 +22,7 @@ from ...base.crs import CRS, Unit
 from ...base.errors import CrsError, PointsError
 from ...base.notes import warn
 from ...base.types import Bounds
-from ...io.mesh.globe import describe_heights, has_heights, place_on_globe
+from ...io.mesh import describe_heights, has_heights, place_on_globe
 from ...io.mesh.quantized_mesh import (
     FROM_CORNER,
     MOST_LEVEL,

@@ -14,8 +14,7 @@ from ...base.atomic import replacing
 from ...base.checks import as_flag, as_length
 from ...base.errors import ReadError, TinsmithError, WriteError
 from ...base.notes import naming_file
-from ...io.lidar.labelling import LabelledFile, write_labelled
-from ...io.lidar.virtual_cloud import NamedFile
+from ...io.lidar import LabelledFile, NamedFile, write_labelled
 from ...io.streaming import stream_points
 from ...terrain.ground_filter import (
     Frame,

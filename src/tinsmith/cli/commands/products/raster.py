@@ -54,7 +54,7 @@ def raster(file: Path, spacing: float | None, like: Path | None, job: Job, **ask
       tinsmith raster sample_data/site_survey.csv --crs EPSG:32616 --codes
         --spacing 0.5 -o site.tif
     """
-    from ....io.raster.cells import read_cells
+    from ....io.raster import read_cells
     from ...output import describe_raster_size
 
     if (spacing is None) == (like is None):

@@ -204,7 +204,7 @@ def _insert(base: TIN, survey: Survey, path: Path, job: Job) -> TIN:
 
 def _find_blunders(tin: TIN, job: Job, *, drop: bool) -> tuple[TIN, Suspects]:
     """Look for points that look like blunders, and leave them out where that is asked for."""
-    from ....terrain.inspection.findings import blunders, drop_blunders, screen
+    from ....terrain.inspection import blunders, drop_blunders, screen
     from ...output import Suspects
 
     with job.step("Checking points") as progress:

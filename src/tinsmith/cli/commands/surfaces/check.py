@@ -16,7 +16,7 @@ from ...parameters import input_file
 from ...paths import name_file
 
 if TYPE_CHECKING:
-    from ....tin.checking.checker import CheckResult
+    from ....tin.checking import CheckResult
 
 _PROVED = {
     1: "indices, neighbours and edge flags agree",
@@ -46,7 +46,7 @@ def check(file: Path, level: int, job: Job) -> None:
     Example:
       tinsmith check sample_data/site_survey.csv
     """
-    from ....tin.checking.checker import check as check_tin
+    from ....tin.checking import check as check_tin
 
     tin, survey = job.read_surface(file)
     with job.step(f"Checking {counted(len(tin.triangles), 'triangle')}"):

@@ -75,7 +75,7 @@ def _sample_points(points: AnyArray, count: int | None) -> AnyArray:
     """Return some of the points, in their order; all of them if no number is given."""
     import numpy as np
 
-    from ....tin.paper.comparison import MOST_POINTS
+    from ....tin.paper import MOST_POINTS
 
     if count is None:
         if len(points) > MOST_POINTS:

@@ -74,7 +74,7 @@ def convert(file: Path, job: Job) -> None:
 
 def _make_raster(survey: Survey, path: Path) -> Raster:
     from ....base.errors import PointsError
-    from ....io.raster.gridded import make_raster
+    from ....io.raster import make_raster
 
     try:
         return make_raster(survey)

@@ -66,7 +66,7 @@ def edit(file: Path, script: Path | None, undo: int | None, report: Path | None,
       add_breakline,,752700,4024300,323,,,,1
       remove_breakline,,,,,,,0
     """
-    from ....tin.editing.history import apply_edits
+    from ....tin.editing import apply_edits
     from ...output import format_json
     from ...outputs import write_text
 

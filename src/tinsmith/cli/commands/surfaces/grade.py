@@ -98,7 +98,7 @@ def _require_one(elevation: float | None, factors: dict[str, float], *, balance:
 def _read_ring(path: Path, tin: TIN, job: Job, notes: list[str], *, drape: bool) -> Any:
     """Return the one ring of a file of a pad."""
     from ....io import read_polygons
-    from ....io.vector.survey_lines import split_layer
+    from ....io.vector import split_layer
 
     named, layer = split_layer(path)
     found: Any = read_polygons(

@@ -75,7 +75,7 @@ def view(
       tinsmith view sample_data/site_survey.csv --crs EPSG:32616 --codes -o site.html
     """
     from ....terrain import preview
-    from ....terrain.viewer.presentation import PREVIEW_SUFFIXES
+    from ....terrain.viewer import PREVIEW_SUFFIXES
     from ...outputs import describe_file, require_picture
 
     more = [] if ortho is None else [Named(ortho, "the picture to drape")]
@@ -116,7 +116,7 @@ def view(
 
 def _describe_sample(survey: Survey) -> str | None:
     """Return how many cells of a raster were read, if not all were."""
-    from ....io.raster.dem import LEFT_OUT
+    from ....io.raster import LEFT_OUT
 
     left_out = survey.skipped.get(LEFT_OUT, 0)
     read = len(survey.points) + survey.skipped.get("nodata cells", 0)
