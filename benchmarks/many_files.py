@@ -6,8 +6,9 @@ processes as cores; the same tiles to a raster of 1 m by ``tinsmith raster``, wi
 over all processes. ``--format csv`` takes one file of delimited text with the same points instead.
 ``--beside`` computes the raster of the ground points in one text file by both ``tinsmith raster``
 and ``gdal_grid -a linear`` (10^6 points take GDAL minutes), and tells how much they differ.
-``--in-place`` makes rasters of an octree (COPC) of that many points and of a cloud optimized
-GeoTIFF of as many cells, copied and read in place, and tells what the folder of the run takes.
+``--in-place`` makes rasters of an octree (COPC) of that many points, of its ground as GeoParquet,
+and of a cloud optimized GeoTIFF of as many cells, copied and read in place, and tells what the
+folder of the run takes.
 """
 
 from __future__ import annotations
@@ -30,6 +31,7 @@ import rasterio
 
 from .datasets.lidar_tiles import make_ground, make_lidar_tiles, make_text
 from .datasets.octrees import write_octree
+from .datasets.row_groups import write_row_groups
 from .report.tables import TEXT, Table, add_option
 
 COLUMNS = {
@@ -220,10 +222,13 @@ def make_elevations(path: Path, count: int) -> Path:
     return path
 
 
-def compare_places(folder: Path, octree: Path, count: int, workers: int, table: Table) -> None:
+def compare_places(folder: Path, tile: Path, count: int, workers: int, table: Table) -> None:
     """Compute rasters of copied points and of points in place, whose files must be the same."""
     elevations = make_elevations(folder / f"elevations-{count:.0e}.tif", count)
-    sources = {"COPC": (octree, ("--classes", "2")), "COG": (elevations, ())}
+    octree = write_octree(tile, folder / f"octree-{count:.0e}.copc.laz")
+    groups = write_row_groups(tile, folder / f"ground-{count:.0e}.parquet")
+    sources = {"COPC": (octree, ("--classes", "2")), "GeoParquet": (groups, ())}
+    sources["COG"] = (elevations, ())
     for name, (source, options) in sources.items():
         made = {"copied": folder / f"{name}.tif", "in place": folder / f"{name}-in-place.tif"}
         for how, output in made.items():
@@ -262,8 +267,7 @@ def main() -> None:
     table = Table(PLACES if given.in_place else COLUMNS)
     output = given.folder / "dtm.tif"
     if given.in_place:
-        octree = write_octree(tiles[0], given.folder / f"octree-{given.points:.0e}.copc.laz")
-        compare_places(given.folder, octree, given.points, given.workers, table)
+        compare_places(given.folder, tiles[0], given.points, given.workers, table)
     elif given.beside:
         compare_with_gdal(given.folder, tiles, given.workers, table)
     elif given.format == "csv":
