@@ -5,7 +5,7 @@ An object of ezdxf for each triangle would take a second for 10,000 of them.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -21,6 +21,23 @@ _IN_SPACE = 8
 
 _LONGEST_TEXT = 250
 """DXF allows 255 letters in extended data."""
+
+_CENTRED, _AMID = 1, 2
+"""Horizontal and vertical alignment of a TEXT."""
+_MIDDLE = 5
+"""Attachment point of an MTEXT: the middle of its centre."""
+_AS_WINDOW = 3
+"""Background of an MTEXT: filled with the colour of the window."""
+_MASK = 1.2
+"""Size of the background by that of the text."""
+
+
+class Lettering(NamedTuple):
+    """How texts are written."""
+
+    height: float
+    rotations: list[float]
+    """Degrees counter-clockwise from east."""
 
 
 class EntityWriter:
@@ -138,6 +155,29 @@ class EntityWriter:
                 head = self._begin("TEXT", layer, "AcDbText")
                 end = "" if self._is_r12 else "100\nAcDbText\n"
                 self.parts.append(f"{head}{_format_place(row)}40\n{height!r}\n1\n{plain}\n{end}")
+
+    def add_labels(
+        self, layer: str, points: Float64Array, texts: Sequence[str], how: Lettering
+    ) -> None:
+        """Add texts centred at points and turned, with a mask that hides the line behind each.
+
+        R12 knows no masks.
+        """
+        for row, text, turn in zip(points.tolist(), texts, how.rotations, strict=True):
+            place, plain = _format_place(row), clean_text(text)
+            if self._is_r12:
+                x, y, z = row
+                self.parts.append(
+                    f"{self._begin('TEXT', layer)}{place}40\n{how.height!r}\n1\n{plain}\n"
+                    f"50\n{turn!r}\n72\n{_CENTRED}\n73\n{_AMID}\n"
+                    f"11\n{x!r}\n21\n{y!r}\n31\n{z!r}\n"
+                )
+            else:
+                self.parts.append(
+                    f"{self._begin('MTEXT', layer, 'AcDbMText')}{place}"
+                    f"40\n{how.height!r}\n71\n{_MIDDLE}\n72\n1\n1\n{plain}\n"
+                    f"50\n{turn!r}\n90\n{_AS_WINDOW}\n63\n256\n45\n{_MASK!r}\n"
+                )
 
 
 def _format_place(row: Sequence[float]) -> str:

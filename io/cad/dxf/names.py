@@ -26,13 +26,18 @@ LAYERS = {
     "POINT_NUMBERS": 2,
     "POINT_ELEVATIONS": 7,
     "POINT_DESCRIPTIONS": 9,
+    "POINT_CUT_FILL": 1,
     "CONTOURS": 32,
     "INDEX_CONTOURS": 34,
+    "CONTOUR_LABELS": 7,
     "CONSTRAINED_EDGES": 9,
     "LINES": 7,
     "POLYGONS": 7,
 }
 """Colours by AutoCAD's index."""
+
+HEAVY = {"INDEX_CONTOURS": 35}
+"""Widths of lines in hundredths of a millimetre, where they are not the usual one."""
 
 
 UNIT_OF_CODE = {

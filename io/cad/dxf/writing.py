@@ -10,28 +10,30 @@ from __future__ import annotations
 import io
 from contextlib import contextmanager
 from importlib import import_module
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from ....base import optional
 from ....base.atomic import replacing
-from ....base.checks import as_flag
+from ....base.checks import as_flag, as_length
 from ....base.errors import FormatError, choice
 from ....base.notes import warn
 from ....base.policies import DrawingVersion
 from ....base.results import Features
 from ....base.sentences import FILE
+from ....terrain import contour_labels
 from ....tin import TIN, Surface, Survey
 from ....tin.topology import directed_edges, edge_keys
 from ...registry import select_attributes, warn_of_unknown_elevations
 from ..drawing import choose_length_unit, list_lines, scale_elevations
-from .entities import EntityWriter
+from .entities import EntityWriter, Lettering
 from .names import (
     APPLICATION,
     CONSTRAINED,
     CRS_PROPERTY,
     ELEVATION_PROPERTY,
+    HEAVY,
     LAYERS,
     UNKNOWN,
     find_code,
@@ -61,12 +63,14 @@ def write(
     version: DrawingVersion = "R2010",
     unit: UnitLike | None = None,
     labels: bool = True,
+    label_height: float | None = None,
     progress: Tell | None = None,
 ) -> None:
     """Write a TIN, a survey, or features as a DXF drawing.
 
     Triangles become 3DFACEs on the layer TIN, lines 3D polylines on BREAKLINES, BOUNDARY and so on,
-    contours plane polylines with an elevation on CONTOURS and INDEX_CONTOURS, points POINTs.
+    contours plane polylines with an elevation on CONTOURS and INDEX_CONTOURS, points POINTs. Labels
+    of contours are texts along them on CONTOUR_LABELS; they hide the line behind them, but in R12.
 
     Parameters
     ----------
@@ -76,7 +80,11 @@ def write(
         Unit of coordinates and elevations, where the CRS does not tell.
     labels : bool
         Write number, elevation and description of points, and cut and fill of points that are set
-        out, as texts on layers of their own.
+        out, as texts on layers of their own; label contours, index contours alone if there are
+        some.
+    label_height : float, optional
+        Height of these texts, in the unit of coordinates; default a share of how far points, or
+        labels of a contour, are apart.
 
     Raises
     ------
@@ -96,7 +104,8 @@ def write(
     if not isinstance(obj, Surface | Survey | Features):
         raise FormatError(f"Cannot write {FILE}: a {type(obj).__name__} is no surface or survey.")
     choice("version", version, DrawingVersion)
-    labels = as_flag("labels", labels)
+    height = None if label_height is None else as_length("label_height", label_height)
+    lettering = _Labelling(as_flag("labels", labels), height)
     ezdxf = optional.load("ezdxf", "Writing DXF drawings")
     along, factor = choose_length_unit(
         obj, unit, is_known=lambda one: find_code(one) > 0, format_name="DXF"
@@ -119,9 +128,9 @@ def write(
     if isinstance(obj, Surface):
         add_tin(writer, obj, factor)
     elif isinstance(obj, Survey):
-        add_survey(writer, obj, texts, factor, labels=labels)
+        add_survey(writer, obj, texts, factor, lettering)
     else:
-        add_features(writer, obj, texts, factor, labels=labels)
+        add_features(writer, obj, texts, factor, lettering)
     warn_of_unknown_elevations(obj)
     with replacing(path) as file:
         file.write(_encode(_count_handles(head, writer), encoding))
@@ -151,7 +160,9 @@ def _make_document(
         document.header["$MEASUREMENT"] = int(unit is None or unit.name.endswith("metre"))
     document.appids.add(APPLICATION)
     for name, colour in LAYERS.items():
-        document.layers.add(name, color=colour)
+        layer = document.layers.add(name, color=colour)
+        if version != "R12" and name in HEAVY:
+            layer.dxf.lineweight = HEAVY[name]
     _set_view(document, obj, factor)
     if obj.crs is not None:
         document.header.custom_vars.append(CRS_PROPERTY, " ".join(str(obj.crs).split()))
@@ -216,6 +227,20 @@ _LABELS = {
 """Of what is written beside points, from top to bottom, the layer."""
 _SHARE = 0.2
 """Height of labels as a share of the mean distance of points."""
+_SHARE_OF_EXTENT = 0.007
+"""Height of labels of contours as a share of how far they reach."""
+
+
+_CONTOURS = ("contours", "elevation", "is_index", "is_closed")
+_CONTOUR_LABELS = ("contour labels", "text", "elevation", "rotation")
+"""Names of features, and of columns that such have."""
+
+
+class _Labelling(NamedTuple):
+    """Whether points and contours are labelled, and how high texts are, if that is given."""
+
+    is_wanted: bool
+    height: float | None
 
 
 def add_tin(writer: EntityWriter, tin: TIN, factor: float) -> None:
@@ -235,7 +260,9 @@ def add_tin(writer: EntityWriter, tin: TIN, factor: float) -> None:
 
 def select_texts(obj: TIN | Survey | Features) -> dict[str, AnyArray]:
     """Return the texts of points that a drawing holds, and tell of other attributes."""
-    if isinstance(obj, Surface) or (isinstance(obj, Features) and obj.kind != "points"):
+    if isinstance(obj, Surface):
+        return {}
+    if isinstance(obj, Features) and (obj.kind != "points" or _are(obj, _CONTOUR_LABELS)):
         return {}
     attributes = obj.attributes if isinstance(obj, Survey) else obj.columns
     reason = "a drawing has the number and the description of a point"
@@ -247,12 +274,11 @@ def add_survey(
     survey: Survey,
     texts: dict[str, AnyArray],
     factor: float,
-    *,
-    labels: bool,
+    labelling: _Labelling,
 ) -> None:
     """Add points with their texts and labels, and lines."""
     points = scale_elevations(survey.points, factor)
-    _add_points(writer, points, points[:, 2], texts, labels=labels)
+    _add_points(writer, points, points[:, 2], texts, labelling)
     for line in list_lines(survey, factor):
         stated = (line.kind, line.name, line.polygon or "", str(line.priority))
         writer.add_line(_LAYER_OF_KIND[line.kind], line.coordinates, stated)
@@ -263,17 +289,19 @@ def add_features(
     features: Features,
     texts: dict[str, AnyArray],
     factor: float,
-    *,
-    labels: bool,
+    labelling: _Labelling,
 ) -> None:
     """Add points, lines or the rings of polygons; contours on layers of their own."""
+    if _are(features, _CONTOUR_LABELS):
+        _add_contour_labels(writer, features, factor, labelling.height)
+        return
     if features.kind == "points":
         rows = features.coordinates
         if not features.has_elevations:
             rows = np.column_stack([rows, np.zeros(len(rows))])
         rows = scale_elevations(rows, factor)
         elevations = rows[:, 2] if features.has_elevations else np.full(len(rows), np.nan)
-        _add_points(writer, np.nan_to_num(rows, nan=0.0), elevations, texts, labels=labels)
+        _add_points(writer, np.nan_to_num(rows, nan=0.0), elevations, texts, labelling)
         return
     names = _choose_layers(features)
     for line in list_lines(features, factor):
@@ -282,6 +310,32 @@ def add_features(
             writer.add_contour(layer, rows)
         else:
             writer.add_line(layer, rows)
+    if labelling.is_wanted and _are(features, _CONTOURS):
+        labels = contour_labels(features)
+        _add_contour_labels(writer, labels, factor, labelling.height)
+
+
+def _are(features: Features, kind: tuple[str, ...]) -> bool:
+    """Whether features are of a name, and have the columns that such have."""
+    return features.name == kind[0] and all(name in features.columns for name in kind[1:])
+
+
+def _add_contour_labels(
+    writer: EntityWriter, labels: Features, factor: float, height: float | None
+) -> None:
+    """Add labels of contours; of elevations in another unit those of the drawing."""
+    if len(labels) == 0:
+        return
+    places = scale_elevations(labels.coordinates, factor)
+    texts = [str(one) for one in labels.columns["text"].tolist()]
+    if factor != 1.0:
+        texts = [f"{z:.2f}" for z in places[:, 2].tolist()]
+    if height is None:
+        box = labels.bounds
+        extent = max(box.xmax - box.xmin, box.ymax - box.ymin)
+        height = float(f"{extent * _SHARE_OF_EXTENT:.2g}") or 1.0
+    how = Lettering(height, labels.columns["rotation"].tolist())
+    writer.add_labels("CONTOUR_LABELS", places, texts, how)
 
 
 def _choose_layers(features: Features) -> list[str]:
@@ -304,8 +358,7 @@ def _add_points(
     points: Float64Array,
     elevations: Float64Array,
     texts: dict[str, AnyArray],
-    *,
-    labels: bool,
+    labelling: _Labelling,
 ) -> None:
     """Add points, and what is written beside them; an elevation that is NaN is not."""
     if len(points) == 0:
@@ -313,11 +366,11 @@ def _add_points(
     found = {name: _find_texts(texts, name, len(points)) for name in _LABELS}
     stated = zip(found["number"], found["description"], strict=True)
     writer.add_points("POINTS", points, list(stated))
-    if not labels:
+    if not labelling.is_wanted:
         return
     width, depth = np.ptp(points[:, :2], axis=0).tolist()
     distance = max(width, depth) / max(len(points), 1) ** 0.5 if max(width, depth) > 0 else 5.0
-    height = float(f"{distance * _SHARE:.2g}")
+    height = labelling.height or float(f"{distance * _SHARE:.2g}")
     found["elevation"] = ["" if z != z else f"{z:.2f}" for z in elevations.tolist()]
     for k, (name, layer) in enumerate(_LABELS.items()):
         beside = np.array([height * 0.5, height * (0.5 - 1.5 * k), 0.0])

@@ -172,6 +172,8 @@ def test_features_are_what_gdal_reads(one, tmp_path):
         frame = pytest.importorskip("geopandas").read_parquet(path)
     else:
         frame = pyogrio.read_dataframe(path)
+    if one.name == "dxf":  # labels are texts beside the lines
+        frame = frame[frame["Layer"] != "CONTOUR_LABELS"]
     assert len(frame) == len(features)
     wanted = features.to_geodataframe().geometry
     if one.name in IN_DEGREES:

@@ -106,7 +106,7 @@ def test_gdal_reads_triangles_lines_and_points(survey, tmp_path):
 def test_contours_are_plane_polylines_with_an_elevation(survey, tmp_path):
     contours = ts.contours(ts.triangulate(survey), interval=1)
     document = audit(ts.write(contours, tmp_path / "a.dxf"))
-    elevations = {one.dxf.elevation for one in document.modelspace()}
+    elevations = {one.dxf.elevation for one in document.modelspace().query("LWPOLYLINE")}
     assert elevations == set(contours.columns["elevation"].tolist())
     read = ts.read(tmp_path / "a.dxf")
     first = contours.coordinates[: contours.offsets[0][1]]
@@ -164,3 +164,92 @@ def test_texts_that_a_drawing_cannot_hold_are_made_to_fit(tmp_path, version):
     read = ts.read(path)
     assert len(read) == 4
     assert read.attributes["number"].tolist()[0] == "a b c"
+
+
+# ---------------------------------------------------------------- labels of contours
+
+LABELS = ("text", "elevation", "rotation")
+
+
+@pytest.fixture
+def contours():
+    rows, columns = np.mgrid[:13, :13] * 10.0
+    z = 320 + 4 * np.sin(columns / 40) * np.cos(rows / 35)
+    points = np.column_stack([columns.ravel() + 752700, rows.ravel() + 4024200, z.ravel()])
+    tin = ts.triangulate(points, crs="EPSG:32616", elevation_unit="m")
+    return ts.contours(tin, interval=0.5)
+
+
+def read_labels(path):
+    """Return the labels of a drawing: places, texts, rotations, heights, kinds."""
+    found = []
+    for one in audit(path).modelspace().query('*[layer=="CONTOUR_LABELS"]'):
+        if one.dxftype() == "MTEXT":
+            assert one.dxf.attachment_point == 5
+            assert (one.dxf.bg_fill, one.dxf.box_fill_scale) == (3, 1.2)
+            found.append((tuple(one.dxf.insert), one.text, one.dxf.rotation, one.dxf.char_height))
+        else:
+            assert (one.dxf.halign, one.dxf.valign) == (1, 2)
+            place = tuple(one.dxf.align_point)
+            found.append((place, one.dxf.text, one.dxf.rotation, one.dxf.height))
+    return found
+
+
+@pytest.mark.parametrize("version", ["R2010", "R12"])
+@pytest.mark.filterwarnings("ignore::tinsmith.LossWarning")
+def test_contours_are_labelled_along_the_lines(contours, tmp_path, version):
+    path = ts.write(contours, tmp_path / "a.dxf", version=version)
+    labels = ts.contour_labels(contours)
+    found = read_labels(path)
+    assert len(found) == len(labels) > 3
+    texts, elevations, rotations = (labels.columns[name].tolist() for name in LABELS)
+    for k, (place, text, rotation, height) in enumerate(found):
+        assert place == tuple(labels.coordinates[k].tolist())
+        assert (text, rotation, place[2]) == (texts[k], rotations[k], elevations[k])
+        assert 0.1 < height < 3
+        first, last = contours.offsets[0][labels.columns["line"][k] :][:2]
+        line = shapely.LineString(contours.coordinates[first:last, :2])
+        assert line.distance(shapely.Point(place[:2])) < 1e-6
+    drawn = [one for one in audit(path).modelspace() if one.dxftype().endswith("POLYLINE")]
+    assert len(drawn) == len(contours)
+
+
+def test_index_contours_are_heavier(contours, tmp_path):
+    layers = audit(ts.write(contours, tmp_path / "a.dxf")).layers
+    assert layers.get("INDEX_CONTOURS").dxf.lineweight == 35
+    assert layers.get("CONTOURS").dxf.lineweight < 0  # the usual one
+
+
+def test_labels_alone_are_the_same_texts_without_points(contours, tmp_path):
+    labels = ts.contour_labels(contours)
+    alone = ts.write(labels, tmp_path / "labels.dxf")
+    assert read_labels(alone) == read_labels(ts.write(contours, tmp_path / "a.dxf"))
+    assert not audit(alone).modelspace().query("POINT")
+
+
+def test_labels_are_left_out_or_of_a_height(contours, tmp_path):
+    assert read_labels(ts.write(contours, tmp_path / "a.dxf", labels=False)) == []
+    found = read_labels(ts.write(contours, tmp_path / "b.dxf", label_height=2.5))
+    assert {height for *_, height in found} == {2.5}
+    with pytest.raises(ts.OptionError, match="label_height"):
+        ts.write(contours, tmp_path / "c.dxf", label_height=0)
+    assert not (tmp_path / "c.dxf").exists()
+
+
+@pytest.mark.filterwarnings("ignore::tinsmith.LossWarning")
+def test_labels_are_in_the_unit_of_the_drawing(contours, tmp_path):
+    """A drawing has one unit: elevations in feet above metres become metres, labels with them."""
+    feet = ts.Features.of_lines(
+        contours.coordinates, contours.offsets[0], columns=contours.columns, crs="EPSG:32616",
+        elevation_unit="ft", name="contours",
+    )  # fmt: skip
+    found = read_labels(ts.write(feet, tmp_path / "a.dxf"))
+    assert found
+    for place, text, *_ in found:
+        assert float(text) == pytest.approx(place[2], abs=0.005)
+        assert 90 < place[2] < 105
+
+
+def test_lines_that_are_called_contours_need_no_columns(tmp_path):
+    line = ts.Features.of_lines([[0, 0, 5], [4, 0, 5]], [0, 2], name="contours")
+    assert read_labels(ts.write(line, tmp_path / "a.dxf", unit="m")) == []
