@@ -6,6 +6,7 @@ from ..registry import SURFACES, Format, Loss, signatures
 from .signatures import (
     TIN_FILES,
     is_2dm,
+    is_adcirc,
     is_cityjson,
     is_esri_tin,
     is_gzipped_tile,
@@ -92,12 +93,21 @@ FORMATS = (
         "2dm",
         "2DM mesh of SMS (for hydraulic models; opens in QGIS)",
         ".2dm",
-        module="sms",
+        module="hydraulic.sms",
         is_text=True,
         losses="The CRS and the unit of elevations; names and kinds of lines; attributes; the "
         "report.",
         loses=("crs", "elevation unit", "lines", "attributes", "notes", "report"),
         sniff=is_2dm,
+    ),
+    _make(
+        *("adcirc", "Mesh of ADCIRC (fort.14) and SCHISM (hgrid.gr3)", ".14", ".gr3"),
+        module="hydraulic.adcirc",
+        is_text=True,
+        losses="The CRS and the unit of elevations; lines other than open and land boundaries; "
+        "which edges are constrained; attributes; the report.",
+        loses=("crs", "elevation unit", *_LOSES),
+        sniff=is_adcirc,
     ),
     _make(
         "ugrid",

@@ -27,12 +27,32 @@ _GZIP = b"\x1f\x8b"
 _OFF = re.compile(rb"\s*(?:ST)?C?N?4?n?OFF\s")
 _2DM = re.compile(rb"(?:[ \t]*(?:#[^\n]*)?\r?\n)*\s*MESH2D")
 """Comments may stand before the keyword."""
+_NUMBER = rb"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eEdD][-+]?\d+)?"
+_COUNTS = re.compile(rb"\s*[1-9]\d{0,17}\s+[1-9]\d{0,17}(?:\s+[^-+.\d\s].*)?\s*")
+_NODE = re.compile(rb"\s*\d+(?:\s+" + _NUMBER + rb"){3}\s*")
+_ELEMENT = re.compile(rb"\s*\d+\s+(?:3(?:\s+\d+){3}|4(?:\s+\d+){4})\s*")
 _CITYJSON = re.compile(rb'"type"\s*:\s*"CityJSON"')
 
 
 def is_2dm(head: bytes) -> bool:
     """Whether the file is a 2DM mesh."""
     return _2DM.match(head.removeprefix(b"\xef\xbb\xbf")) is not None
+
+
+def is_adcirc(head: bytes) -> bool:
+    r"""Whether the file is a mesh of ADCIRC or SCHISM: its counts, and rows of nodes and elements.
+
+    Examples
+    --------
+    >>> is_adcirc(b"title\n1 3\n1 0 0 5\n2 4 0 6\n3 0 3 7\n1 3 1 2 3\n")
+    True
+    """
+    rows = head.split(b"\n", 12)[1:12]
+    if len(rows) < 5 or not _COUNTS.fullmatch(rows[0]):
+        return False
+    n_elements, n_nodes = (int(word) for word in rows[0].split()[:2])
+    nodes, elements = rows[1 : n_nodes + 1], rows[n_nodes + 1 : n_nodes + n_elements + 1]
+    return all(map(_NODE.fullmatch, nodes)) and all(map(_ELEMENT.fullmatch, elements))
 
 
 def is_off(head: bytes) -> bool:

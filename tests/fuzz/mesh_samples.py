@@ -38,6 +38,14 @@ def _make_2dm(folder: Path) -> list[tuple[str, bytes]]:
     return [*_write(folder, "a.2dm"), *_read("*.2dm")]
 
 
+def _make_adcirc(folder: Path) -> list[tuple[str, bytes]]:
+    points = [[0, 0, 5], [4, 0, 6], [4, 3, 7], [0, 3, 8], [9, 1, 6]]
+    rows = "".join(f"{7 * k} {x}.0D+00 {y} -{z}\n" for k, (x, y, z) in enumerate(points, 1))
+    mixed = f"coast\n2 5\n{rows}1 4 7 14 21 28\n2 3 14 35 21\n1\n3\n3 0\n28\n7\n14\n"
+    land = "2\n5\n2 20 = remark\n14\n35\n2 24\n35 7 2.5 1 1\n21 14 2.5 1 1\n"
+    return [*_write(folder, "a.14"), ("hgrid.gr3", (mixed + land).encode())]
+
+
 def _make_off(folder: Path) -> list[tuple[str, bytes]]:
     colors = b"COFF\n4 1 0\n0 0 5 9 0 0\n4 0 6 1 1 1\n4 3 7 1 1 1\n0 3 8 1 1 1\n4 0 1 2 3 9 9 9\n"
     return [*_write(folder, "a.off"), ("colours.off", colors)]
@@ -98,6 +106,7 @@ def _make_terrain(folder: Path) -> list[tuple[str, bytes]]:
 
 MESH_MAKERS = {
     "2dm": _make_2dm,
+    "adcirc": _make_adcirc,
     "off": _make_off,
     "cityjson": _make_cityjson,
     "ugrid": _make_ugrid,

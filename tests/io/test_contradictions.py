@@ -61,7 +61,8 @@ class Reason(NamedTuple):
 TEXT = ("delimited",)
 INSTRUMENTS = ("gsi", "sdr", "jobxml", "dc")
 CELLS = ("raster",)
-MESHES = ("tin", "ply", "obj", "stl", "vtk", "gmsh", "2dm", "ugrid", "esri-tin", "cityjson", "off")
+HYDRAULIC = ("2dm", "adcirc", "ugrid")
+MESHES = ("tin", "ply", "obj", "stl", "vtk", "gmsh", *HYDRAULIC, "esri-tin", "cityjson", "off")
 IN_DEGREES = ("geojson", "geojsonseq")
 LAYERS = ("gpkg", "flatgeobuf", "shapefile", "geoparquet", "vector")
 DRAWINGS = ("landxml", "dxf")
@@ -127,7 +128,7 @@ TRIANGLES = Reason("triangles only")
 NO_POLYGONS = Reason("points only")
 NOT_MOVED = Reason("triangles are not reprojected")
 NO_MODE = Reason("heights are elevations by its definition")
-OTHERS = {name for name in READ if name not in (*TEXT, *CELLS, "ugrid")}
+OTHERS = {name for name in READ if name not in (*TEXT, *CELLS, "ugrid", "adcirc")}
 
 SAID = {
     "depths": {
@@ -137,17 +138,19 @@ SAID = {
         "delimited": Refused("'positive' may change what it means"),
         "raster": Noted("their sign was changed"),
         "ugrid": Noted("their sign was changed"),
+        "adcirc": Noted("their sign was changed"),
     },
     "errors of elevations": {
         **each(OTHERS, NO_WORD),
         **each(LAYERS, Refused("no column of numbers with such a name")),
         **each(IN_DEGREES, Refused("no column of numbers with such a name")),
         "delimited": Refused("'uncertainty' may change what it means"),
+        "adcirc": NO_WORD,
         "raster": Refused("which is no elevation"),
         "ugrid": Refused("no elevations of its nodes are told"),
     },
     "a time series": {
-        **each(OTHERS, ONE_TIME),
+        **each({*OTHERS, "adcirc"}, ONE_TIME),
         "delimited": Refused("may change what it means"),
         "raster": Refused("one for each time"),
         "ugrid": Refused("no elevations of its nodes are told"),
@@ -158,7 +161,7 @@ SAID = {
         **each(
             ("ply", "obj", "off", "vtk", "gmsh", "ugrid", "cityjson"), Noted("1 polygon of the")
         ),
-        "2dm": Noted("1 polygon of the"),
+        **each(("2dm", "adcirc"), Noted("1 polygon of the")),
         "dxf": Noted("1 face of four corners cut in two"),
         "landxml": Refused("a face has 4 numbers"),
         **each((*LAYERS, *IN_DEGREES), Refused("holds polygons, no points")),

@@ -220,11 +220,17 @@ def _save(frame: Any, name: str, folder: Path) -> Path:
     return path
 
 
+def _write_adcirc(points: Any, folder: Path) -> File:
+    rows = "".join(f"{k} {x} {y} {z}\n" for k, (x, y, z) in enumerate(_order(points).tolist(), 1))
+    return _write(folder / "a.14", f"title\n1 4\n{rows}1 4 1 2 3 4\n")
+
+
 _LAYERS = ("gpkg", "flatgeobuf", "shapefile", "geoparquet", "vector", "geojson", "geojsonseq")
 
 DEPTHS = {
     "delimited": _write_header("Easting", "Northing", "Z (positive down)"),
     "raster": _write_cells(positive="down"),
+    "adcirc": _write_adcirc,
     "ugrid": _write_ugrid(positive="down"),
     **{name: _write_layer(name, "depth") for name in _LAYERS},
 }
@@ -244,6 +250,7 @@ QUADRILATERALS = {
     "obj": _write_quadrilateral("a.obj", "OBJf 1 2 3 4\n"),
     "off": _write_quadrilateral("a.off", "OFF\n4 1 0\nPOINTS4 0 1 2 3\n"),
     "2dm": _write_quadrilateral("a.2dm", "MESH2D\nNODESE4Q 1 1 2 3 4 1\n"),
+    "adcirc": _write_adcirc,
     "vtk": _write_with_meshio(".vtu"),
     "gmsh": _write_with_meshio(".msh"),
     "ugrid": lambda points, folder: _write_ugrid(standard_name="altitude")(_order(points), folder),

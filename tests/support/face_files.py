@@ -56,6 +56,14 @@ def _write_2dm(points: Any, triangles: Any, folder: Path) -> Any:
     )
 
 
+def _write_adcirc(points: Any, triangles: Any, folder: Path) -> Any:
+    nodes = "".join(f"{k} {x} {y} {-z}\n" for k, (x, y, z) in enumerate(points.tolist(), 1))
+    faces = enumerate((triangles + 1).tolist(), 1)
+    elements = "".join(f"{k} 3 {a} {b} {c}\n" for k, (a, b, c) in faces)
+    head = f"depths\n{len(triangles)} {len(points)}\n"
+    return _write_text(folder / "a.gr3", head + nodes + elements)
+
+
 def _write_stl(points: Any, triangles: Any, folder: Path) -> Any:
     facets = np.zeros(len(triangles), [("n", "<f4", 3), ("c", "<f4", (3, 3)), ("a", "<u2")])
     facets["c"] = points[triangles]
@@ -170,6 +178,7 @@ FACE_WRITERS = {
     "obj": _write_obj,
     "off": _write_off,
     "2dm": _write_2dm,
+    "adcirc": _write_adcirc,
     "stl": _write_stl,
     "vtu": _write_with_meshio(".vtu"),
     "msh": _write_with_meshio(".msh", file_format="gmsh22", binary=False),

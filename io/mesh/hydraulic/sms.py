@@ -11,22 +11,23 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ...base.atomic import replacing
-from ...base.errors import ReadError
-from ...base.sentences import FILE, counted
-from ...tin.topology import find_offsets
-from . import common
-from .common import Mesh, mesh_reader
-from .linework import Chain, add_lines, list_chains
-from .text_rows import TextRows, format_rows, parse_integers, split_rows, write_batches
+from ....base.atomic import replacing
+from ....base.errors import ReadError
+from ....base.sentences import FILE, counted
+from ....tin.topology import find_offsets
+from .. import common
+from ..common import Mesh, mesh_reader
+from ..linework import Chain, add_lines, list_chains
+from ..text_rows import TextRows, format_rows, parse_integers, split_rows, write_batches
+from .nodes import find_nodes, require_distinct
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
-    from ...base.arrays import Int64Array
-    from ...base.progress import Tell
-    from ...tin import TIN
+    from ....base.arrays import Int64Array
+    from ....base.progress import Tell
+    from ....tin import TIN
 
 _NODES_IN_A_ROW = 10
 _FACES = {
@@ -63,11 +64,7 @@ def read(path: Path) -> Mesh:
     what = "a node needs its number, x, y and z"
     points = rows.parse_floats(slice(2, 5), what)
     numbers = rows.parse_integers(slice(1, 2), what).ravel()
-    order = np.argsort(numbers, kind="stable")
-    again = np.flatnonzero(np.diff(numbers[order]) == 0)
-    if len(again):
-        row = int(order[again[0] + 1])
-        raise rows.describe_fault(row, f"there is a node {numbers[row]} already")
+    require_distinct(numbers, rows)
     found = [_parse_elements(card, cards[card], numbers) for card in _FACES if card in cards]
     if not found:
         return Mesh(points)
@@ -79,7 +76,7 @@ def read(path: Path) -> Mesh:
         for at, word in enumerate(words[1:], start=1):
             node = parse_integers([word], line)[0]
             called = np.array([[abs(node)]], np.int64)
-            open_nodes.append(int(_find_nodes(called, numbers, rows.cut(i, i + 1))[0, 0]))
+            open_nodes.append(int(find_nodes(called, numbers, rows.cut(i, i + 1))[0, 0]))
             if node < 0:
                 name = words[at + 1] if at + 1 < len(words) else ""
                 strings.append(Chain(np.array(open_nodes), None, name))
@@ -102,22 +99,9 @@ def _parse_elements(
     """Return the corners of the polygons that elements of one kind become, and their lengths."""
     count, polygons = _FACES[card]
     what = f"an element {card} needs its number and {count} nodes"
-    nodes = _find_nodes(rows.parse_integers(slice(2, count + 2), what), numbers, rows)
+    nodes = find_nodes(rows.parse_integers(slice(2, count + 2), what), numbers, rows)
     corners = nodes[:, [slot for polygon in polygons for slot in polygon]].ravel()
     return corners, np.tile([len(polygon) for polygon in polygons], len(nodes))
-
-
-def _find_nodes(named: Int64Array, numbers: Int64Array, rows: TextRows) -> Int64Array:
-    """Return the rows of nodes that are called by number."""
-    order = np.argsort(numbers)
-    at = np.searchsorted(numbers, named, sorter=order)
-    found = order[np.minimum(at, len(order) - 1)] if len(order) else np.zeros_like(at)
-    wrong = (numbers[found] != named) if len(order) else np.ones(named.shape, np.bool_)
-    if wrong.any():
-        row = int(np.argmax(wrong.reshape(len(named), -1).any(axis=1)))
-        first = int(named[row].ravel()[np.argmax(wrong[row])])
-        raise rows.describe_fault(row, f"there is no node {first}")
-    return np.asarray(found, np.int64)
 
 
 def _describe_losses(cards: dict[str, TextRows]) -> list[str]:
