@@ -154,7 +154,8 @@ def read(
         ``classes``, ``returns``, ``resolution``, ``every``, ``withheld``, ``attributes``,
         ``window``; of vector layers ``layer``, ``z_field``, ``where``, ``lines_as``, ``nodata``; of
         LandXML and DXF ``unit``, ``content``, ``surface``, ``layer``, ``texts``, ``tolerance``; of
-        meshes ``faces``, ``surface``, ``variable``, ``join``, ``tile``, ``positive``.
+        meshes ``faces``, ``surface``, ``variable``, ``join``, ``tile``, ``positive``,
+        ``frame``.
 
     Returns
     -------

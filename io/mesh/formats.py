@@ -12,6 +12,7 @@ from .signatures import (
     is_gzipped_tile,
     is_off,
     is_quantized_mesh,
+    is_selafin,
     is_tile_folder,
 )
 
@@ -108,6 +109,14 @@ FORMATS = (
         "which edges are constrained; attributes; the report.",
         loses=("crs", "elevation unit", *_LOSES),
         sniff=is_adcirc,
+    ),
+    _make(
+        *("selafin", "Selafin of TELEMAC (opens in QGIS)", ".slf", ".ser"),
+        module="hydraulic.selafin",
+        precision="Every number is kept bit for bit; rounded to float32 where that is asked for.",
+        losses=f"The CRS; {_LOSSES[0].lower()}{_LOSSES[1:]}.",
+        loses=("crs", *_LOSES),
+        sniff=is_selafin,
     ),
     _make(
         "ugrid",

@@ -55,6 +55,15 @@ def is_adcirc(head: bytes) -> bool:
     return all(map(_NODE.fullmatch, nodes)) and all(map(_ELEMENT.fullmatch, elements))
 
 
+def is_selafin(head: bytes) -> bool:
+    """Whether the file is Selafin: a record of 80 bytes, then one of 8, in any order of bytes."""
+    mark, behind = head[:4], head[84:92]
+    big, little = (80).to_bytes(4, "big"), (80).to_bytes(4, "little")
+    if mark not in (big, little):
+        return False
+    return behind == mark + (8).to_bytes(4, "big" if mark == big else "little")
+
+
 def is_off(head: bytes) -> bool:
     """Whether the file is an OFF mesh: its keyword."""
     return _OFF.match(head) is not None

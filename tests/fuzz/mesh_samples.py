@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from support.selafin_files import make_selafin
 
 import tinsmith as ts
 
@@ -44,6 +45,16 @@ def _make_adcirc(folder: Path) -> list[tuple[str, bytes]]:
     mixed = f"coast\n2 5\n{rows}1 4 7 14 21 28\n2 3 14 35 21\n1\n3\n3 0\n28\n7\n14\n"
     land = "2\n5\n2 20 = remark\n14\n35\n2 24\n35 7 2.5 1 1\n21 14 2.5 1 1\n"
     return [*_write(folder, "a.14"), ("hgrid.gr3", (mixed + land).encode())]
+
+
+def _make_selafin(folder: Path) -> list[tuple[str, bytes]]:
+    tin = _tin()
+    names = [("FREE SURFACE", "M"), ("FOND", "M")]
+    frames = [(k * 60.0, [tin.points[:, 2] + k, tin.points[:, 2]]) for k in range(2)]
+    how = {"size": 4, "order": "<", "origin": (752_000, 4_024_000), "date": True}
+    near = tin.points[:, :2] - how["origin"]
+    single = make_selafin(near, tin.triangles + 1, names, frames, **how)
+    return [*_write(folder, "a.slf"), ("single.slf", single)]
 
 
 def _make_off(folder: Path) -> list[tuple[str, bytes]]:
@@ -107,6 +118,7 @@ def _make_terrain(folder: Path) -> list[tuple[str, bytes]]:
 MESH_MAKERS = {
     "2dm": _make_2dm,
     "adcirc": _make_adcirc,
+    "selafin": _make_selafin,
     "off": _make_off,
     "cityjson": _make_cityjson,
     "ugrid": _make_ugrid,

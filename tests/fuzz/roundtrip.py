@@ -15,9 +15,9 @@ import tinsmith as ts
 from .campaign import Campaign
 from .samples import MEMORY
 
-SUFFIXES = ("ply", "obj", "vtp", "vtu", "msh", "stl", "geojson", "csv", "14")
-_NO_FLAGS = ("obj", "msh", "stl", "14")
-_NO_CRS = ("msh", "14")
+SUFFIXES = ("ply", "obj", "vtp", "vtu", "msh", "stl", "geojson", "csv", "14", "slf")
+_NO_FLAGS = ("obj", "msh", "stl", "14", "slf")
+_NO_CRS = ("msh", "14", "slf")
 
 
 def generate(rng: np.random.Generator) -> dict[str, Any]:

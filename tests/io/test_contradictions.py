@@ -61,7 +61,7 @@ class Reason(NamedTuple):
 TEXT = ("delimited",)
 INSTRUMENTS = ("gsi", "sdr", "jobxml", "dc")
 CELLS = ("raster",)
-HYDRAULIC = ("2dm", "adcirc", "ugrid")
+HYDRAULIC = ("2dm", "adcirc", "selafin", "ugrid")
 MESHES = ("tin", "ply", "obj", "stl", "vtk", "gmsh", *HYDRAULIC, "esri-tin", "cityjson", "off")
 IN_DEGREES = ("geojson", "geojsonseq")
 LAYERS = ("gpkg", "flatgeobuf", "shapefile", "geoparquet", "vector")
@@ -128,7 +128,8 @@ TRIANGLES = Reason("triangles only")
 NO_POLYGONS = Reason("points only")
 NOT_MOVED = Reason("triangles are not reprojected")
 NO_MODE = Reason("heights are elevations by its definition")
-OTHERS = {name for name in READ if name not in (*TEXT, *CELLS, "ugrid", "adcirc")}
+SAYING = ("ugrid", "adcirc", "selafin")
+OTHERS = {name for name in READ if name not in (*TEXT, *CELLS, *SAYING)}
 
 SAID = {
     "depths": {
@@ -139,6 +140,7 @@ SAID = {
         "raster": Noted("their sign was changed"),
         "ugrid": Noted("their sign was changed"),
         "adcirc": Noted("their sign was changed"),
+        "selafin": Refused("no variable BOTTOM or FOND"),
     },
     "errors of elevations": {
         **each(OTHERS, NO_WORD),
@@ -146,11 +148,13 @@ SAID = {
         **each(IN_DEGREES, Refused("no column of numbers with such a name")),
         "delimited": Refused("'uncertainty' may change what it means"),
         "adcirc": NO_WORD,
+        "selafin": Refused("no variable BOTTOM or FOND"),
         "raster": Refused("which is no elevation"),
         "ugrid": Refused("no elevations of its nodes are told"),
     },
     "a time series": {
         **each({*OTHERS, "adcirc"}, ONE_TIME),
+        "selafin": Refused("between which BOTTOM changes"),
         "delimited": Refused("may change what it means"),
         "raster": Refused("one for each time"),
         "ugrid": Refused("no elevations of its nodes are told"),
@@ -161,7 +165,7 @@ SAID = {
         **each(
             ("ply", "obj", "off", "vtk", "gmsh", "ugrid", "cityjson"), Noted("1 polygon of the")
         ),
-        **each(("2dm", "adcirc"), Noted("1 polygon of the")),
+        **each(("2dm", "adcirc", "selafin"), Noted("1 polygon of the")),
         "dxf": Noted("1 face of four corners cut in two"),
         "landxml": Refused("a face has 4 numbers"),
         **each((*LAYERS, *IN_DEGREES), Refused("holds polygons, no points")),

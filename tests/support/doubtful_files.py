@@ -11,6 +11,7 @@ import numpy as np
 import tinsmith as ts
 
 from .placed_files import READ, write_points
+from .selafin_files import make_selafin
 
 __all__ = [
     "DEPTHS",
@@ -225,12 +226,24 @@ def _write_adcirc(points: Any, folder: Path) -> File:
     return _write(folder / "a.14", f"title\n1 4\n{rows}1 4 1 2 3 4\n")
 
 
+def _write_selafin(name: str = "BOTTOM", *, n_times: int = 1) -> Any:
+    def write(points: Any, folder: Path) -> File:
+        rows = _order(points)
+        frames = [(float(k), [rows[:, 2] + k]) for k in range(n_times)]
+        path = folder / "a.slf"
+        path.write_bytes(make_selafin(rows[:, :2], [[1, 2, 3, 4]], [(name, "M")], frames))
+        return path, {}
+
+    return write
+
+
 _LAYERS = ("gpkg", "flatgeobuf", "shapefile", "geoparquet", "vector", "geojson", "geojsonseq")
 
 DEPTHS = {
     "delimited": _write_header("Easting", "Northing", "Z (positive down)"),
     "raster": _write_cells(positive="down"),
     "adcirc": _write_adcirc,
+    "selafin": _write_selafin("WATER DEPTH"),
     "ugrid": _write_ugrid(positive="down"),
     **{name: _write_layer(name, "depth") for name in _LAYERS},
 }
@@ -238,12 +251,14 @@ ERRORS = {
     "delimited": _write_header("Easting", "Northing", "Elevation uncertainty"),
     "raster": _write_bands,
     "ugrid": _write_ugrid(standard_name="altitude standard_error"),
+    "selafin": _write_selafin("ERROR"),
     **{name: _write_layer(name, "z_sd") for name in _LAYERS},
 }
 TIMES = {
     "delimited": _write_header("easting", "northing", "z 2019", "z 2020"),
     "raster": _write_cells(3, standard_name="altitude"),
     "ugrid": _write_ugrid(3, standard_name="altitude"),
+    "selafin": _write_selafin(n_times=3),
 }
 QUADRILATERALS = {
     "ply": _write_quadrilateral("a.ply", _PLY),
@@ -251,6 +266,7 @@ QUADRILATERALS = {
     "off": _write_quadrilateral("a.off", "OFF\n4 1 0\nPOINTS4 0 1 2 3\n"),
     "2dm": _write_quadrilateral("a.2dm", "MESH2D\nNODESE4Q 1 1 2 3 4 1\n"),
     "adcirc": _write_adcirc,
+    "selafin": _write_selafin(),
     "vtk": _write_with_meshio(".vtu"),
     "gmsh": _write_with_meshio(".msh"),
     "ugrid": lambda points, folder: _write_ugrid(standard_name="altitude")(_order(points), folder),

@@ -9,6 +9,8 @@ from typing import Any
 
 import numpy as np
 
+from .selafin_files import make_selafin
+
 __all__ = ["FACE_WRITERS", "write_faces"]
 
 _TILE = "14/17000/12000"
@@ -62,6 +64,13 @@ def _write_adcirc(points: Any, triangles: Any, folder: Path) -> Any:
     elements = "".join(f"{k} 3 {a} {b} {c}\n" for k, (a, b, c) in faces)
     head = f"depths\n{len(triangles)} {len(points)}\n"
     return _write_text(folder / "a.gr3", head + nodes + elements)
+
+
+def _write_selafin(points: Any, triangles: Any, folder: Path) -> Any:
+    path = folder / "a.slf"
+    frames = [(0.0, [points[:, 2]])]
+    path.write_bytes(make_selafin(points[:, :2], triangles + 1, [("FOND", "M")], frames))
+    return path, {}
 
 
 def _write_stl(points: Any, triangles: Any, folder: Path) -> Any:
@@ -179,6 +188,7 @@ FACE_WRITERS = {
     "off": _write_off,
     "2dm": _write_2dm,
     "adcirc": _write_adcirc,
+    "selafin": _write_selafin,
     "stl": _write_stl,
     "vtu": _write_with_meshio(".vtu"),
     "msh": _write_with_meshio(".msh", file_format="gmsh22", binary=False),
