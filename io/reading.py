@@ -153,9 +153,9 @@ def read(
         ``band``, ``cells``, ``stride``, ``most_cells``, ``fill``, ``nodata``, ``window``; of lidar
         ``classes``, ``returns``, ``resolution``, ``every``, ``withheld``, ``attributes``,
         ``window``; of vector layers ``layer``, ``z_field``, ``where``, ``lines_as``, ``nodata``; of
-        LandXML and DXF ``unit``, ``content``, ``surface``, ``layer``, ``texts``, ``tolerance``; of
-        meshes ``faces``, ``surface``, ``variable``, ``join``, ``tile``, ``positive``,
-        ``frame``.
+        LandXML, 12d and DXF ``unit``, ``content``, ``surface``, ``layer``, ``texts``,
+        ``tolerance``; of meshes ``faces``, ``surface``, ``variable``, ``join``, ``tile``,
+        ``positive``, ``frame``.
 
     Returns
     -------

@@ -27,6 +27,16 @@ FORMATS = (
         sniff=signatures.is_landxml,
     ),
     _make(
+        *("12da", "Archive of 12d Model", ".12da"),
+        read=f"{__package__}.archive_12d.reading:read",
+        write=f"{__package__}.archive_12d.writing:write",
+        writes=SURFACES,
+        losses="The CRS and the units; attributes of points; notes and report; vertices of no "
+        "triangle.",
+        loses=("crs", "elevation unit", "attributes", "notes", "report"),
+        sniff=signatures.is_12da,
+    ),
+    _make(
         *("dxf", "DXF drawing (AutoCAD and other CAD)", ".dxf"),
         losses="One unit for coordinates and elevations; the numbers of vertices; attributes of "
         "points but number and description; columns of features; notes and report. R12 has no "

@@ -12,6 +12,12 @@ _BEFORE_ROOT = re.compile(
     r"(?:\s+|<\?.{0,2000}?\?>|<!--.*?-->|<!DOCTYPE[^\[>]*(?:\[.*?\]\s*)?>)*", re.S
 )
 _ROOT = re.compile(r"<(?:[\w.-]+:)?LandXML[\s/>]")
+_ARCHIVE = re.compile(
+    r"(?:\s+|//[^\n]*\n)*(?:model|colour|style|breakline|null|attributes|project_attributes|string|"
+    r"tin|full_tin|super_tin|primitive_3d)\s",
+    re.I,
+)
+_ELEMENT = re.compile(r"^(?:[^\n\"]*\s)?(?:string\s+\w+|tin|full_tin)\s*\{", re.I | re.M)
 _DXF = re.compile(
     rb"(?:\s*999\r?\n[^\n]*\n)*\s*0[ \t]*\r?\n[ \t]*SECTION[ \t]*\r?\n[ \t]*2[ \t]*\r?\n"
 )
@@ -29,6 +35,19 @@ def is_landxml(head: bytes) -> bool:
     text = head.decode(encoding, errors="replace").lstrip("\ufeff")
     before = _BEFORE_ROOT.match(text)
     return before is not None and _ROOT.match(text, before.end()) is not None
+
+
+def is_12da(head: bytes) -> bool:
+    r"""Whether the file is an archive of 12d Model: its first word, and a string or a tin.
+
+    Examples
+    --------
+    >>> is_12da(b'model "site"\nstring super {\n')
+    True
+    """
+    encoding = next((name for mark, name in _MARKS.items() if head.startswith(mark)), "latin-1")
+    text = head.decode(encoding, errors="replace").lstrip("\ufeff")
+    return _ARCHIVE.match(text) is not None and _ELEMENT.search(text) is not None
 
 
 def is_dxf(head: bytes) -> bool:

@@ -22,7 +22,7 @@ from .vector_samples import VECTOR_MAKERS, WITH_PARTS
 
 KINDS = (
     *("ply", "obj", "stl", "vtk", "gmsh", "raster", "vectors", "delimited", "tin", "instruments"),
-    *("las", "landxml", "dxf"),
+    *("las", "landxml", "dxf", "12da"),
     *MESH_MAKERS,
     *VECTOR_MAKERS,
 )

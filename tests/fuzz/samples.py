@@ -334,6 +334,22 @@ def _instruments(folder: Path) -> list[tuple[str, bytes]]:
     return [(name, text.encode()) for name, text in texts.items()]
 
 
+def _archive(folder: Path) -> list[tuple[str, bytes]]:
+    text = (
+        'null -999\nmodel "a"\nfull_tin { name "t" points { -9 -9 0  -9 9 0  9 9 0  9 -9 0\n'
+        "0 0 5  0x1.4p+3 0 6  0 10 7  10 10 8 } triangles { 5 7 6  6 7 8  1 5 6 }\n"
+        'nulling { 2 2 1 } }\nstring super { name "k" breakline line attributes {\n'
+        'text "line_kind" "soft" integer "line_source" 2 } data_3d { 0 0 5  10 0 6 } }\n'
+    )
+    strings = (
+        'string 4d { data { 7 7 8 "tree"  8 8 null "" } }\nstring super { closed true z 4\n'
+        "data_2d { 0 0  9 0  9 9 } geometry_data { straight { } arc { radius 5 } } }\n"
+        "string polyline { data { 0 0 1 12 0  20 0 1 0 0 } }\nstring text { x 1 }\n"
+    )
+    return [*_ours(folder, "a.12da"), ("full.12da", text.encode()),
+            ("strings.12da", strings.encode())]  # fmt: skip
+
+
 _MAKERS = {
     "tin": _whole_tin,
     "ply": _ply,
@@ -350,4 +366,5 @@ _MAKERS = {
     **MESH_MAKERS,
     "landxml": _landxml,
     "dxf": _dxf,
+    "12da": _archive,
 }

@@ -65,7 +65,7 @@ HYDRAULIC = ("2dm", "adcirc", "selafin", "ugrid")
 MESHES = ("tin", "ply", "obj", "stl", "vtk", "gmsh", *HYDRAULIC, "esri-tin", "cityjson", "off")
 IN_DEGREES = ("geojson", "geojsonseq")
 LAYERS = ("gpkg", "flatgeobuf", "shapefile", "geoparquet", "vector")
-DRAWINGS = ("landxml", "dxf")
+DRAWINGS = ("landxml", "12da", "dxf")
 PLAIN = (*TEXT, *INSTRUMENTS, *CELLS, *MESHES, *LAYERS, "las")
 """Formats whose coordinates are in whatever CRS the caller names."""
 TILE = {"terrain": Reason("longitude and latitude by its definition, placed by its name")}
@@ -104,7 +104,10 @@ PLACED = {
         **TILE,
     },
     "two orders within the area of use": {
-        **each((*CELLS, *MESHES, *LAYERS, "las", "dxf"), Noted("the northing before the easting")),
+        **each(
+            (*CELLS, *MESHES, *LAYERS, "las", "12da", "dxf"),
+            Noted("the northing before the easting"),
+        ),
         "delimited": Reason("its header or columns name the axes"),
         **each(INSTRUMENTS, Reason("its records name the axes")),
         "landxml": Reason("northing and easting by its definition"),
@@ -161,7 +164,7 @@ SAID = {
     },
     "polygons of four corners": {
         **each((*TEXT, *INSTRUMENTS, *CELLS, "las"), NO_POLYGONS),
-        **each(("tin", "stl", "esri-tin", "terrain"), TRIANGLES),
+        **each(("tin", "stl", "esri-tin", "terrain", "12da"), TRIANGLES),
         **each(
             ("ply", "obj", "off", "vtk", "gmsh", "ugrid", "cityjson"), Noted("1 polygon of the")
         ),

@@ -148,6 +148,14 @@ def _write_landxml(points: Any, triangles: Any, folder: Path) -> Any:
     )
 
 
+def _write_12da(points: Any, triangles: Any, folder: Path) -> Any:
+    faces = _rows(triangles[:, ::-1] + 1)
+    return _write_text(
+        folder / "a.12da",
+        f"tin {{\nname s\npoints {{\n{_rows(points)}}}\ntriangles {{\n{faces}}}\n}}\n",
+    )
+
+
 def _write_dxf(points: Any, triangles: Any, folder: Path) -> Any:
     import ezdxf
 
@@ -195,6 +203,7 @@ FACE_WRITERS = {
     "ugrid": _write_ugrid,
     "cityjson": _write_cityjson,
     "landxml": _write_landxml,
+    "12da": _write_12da,
     "dxf": _write_dxf,
     "gpkg": _write_polygons(".gpkg"),
     "shp": _write_polygons(".shp"),

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import struct
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
@@ -21,14 +20,22 @@ _MARK = 4
 """Bytes of a record's length."""
 
 
-@dataclass(slots=True)
 class RecordReader:
-    """Records of a file, one after the other."""
+    """Records of a file, one after the other.
 
-    content: bytes
-    order: Literal[">", "<"]
-    """The order of bytes."""
-    at: int = 0
+    Attributes
+    ----------
+    content : bytes
+    order : {">", "<"}
+        The order of bytes.
+    at : int
+        Where the next record begins.
+    """
+
+    def __init__(self, content: bytes, order: Literal[">", "<"]) -> None:
+        self.content = content
+        self.order = order
+        self.at = 0
 
     def take(self, what: str, size: int | None = None) -> bytes:
         """Return the next record.

@@ -1,0 +1,1 @@
+"""Archives of 12d Model (.12da): tins, strings, points."""
