@@ -60,11 +60,11 @@ used for whole TINs. Use PLY to view a surface as a mesh, and where size matters
 
 Another package adds formats through the entry-point group `tinsmith.formats`, each entry naming a
 `tinsmith.Format`, and commands through `tinsmith.commands`, each naming a `click.Command`.
-[`docs/examples/tinsmith-ifc`](examples/tinsmith-ifc/README.md) is one to copy: it writes IFC 4.
+[`docs/examples/tinsmith-x3d`](examples/tinsmith-x3d/README.md) is one to copy: it writes X3D.
 
 ```toml
 [project.entry-points."tinsmith.formats"]
-ifc = "tinsmith_ifc:IFC"
+x3d = "tinsmith_x3d:X3D"
 ```
 
 - A plug-in that cannot be loaded or is invalid is skipped, with a warning that names its

@@ -24,7 +24,7 @@ from tinsmith.cli import main
 from tinsmith.cli.paths import split_output
 from tinsmith.terrain.viewer import picture
 
-PLUG_IN = ROOT / "docs/examples/tinsmith-ifc/README.md"  # run by its own test, once installed
+PLUG_IN = ROOT / "docs/examples/tinsmith-x3d/README.md"  # run by its own test, once installed
 README = ROOT / "README.md"  # run by test_repository, as a user runs it
 PAGES = [page for page in list_pages() if page not in (PLUG_IN, README)]
 CRS = "EPSG:32616"

@@ -36,6 +36,19 @@ FORMATS = (
         loses=("crs", "elevation unit", "attributes", "notes", "report"),
         sniff=signatures.is_12da,
     ),
+    Format(
+        name="ifc",
+        description="IFC 4.3 or IFC 4 terrain (for BIM programs)",
+        suffixes=(".ifc",),
+        write=f"{__package__}.ifc.writing:write",
+        writes=("TIN",),
+        is_text=True,
+        precision="Coordinates are relative to a corner of the surface, in the digits of doubles.",
+        relative_rounding=1e-15,
+        losses="One unit for coordinates and elevations; in IFC 4 which edges are constrained, but "
+        "for those of lines; notes and report.",
+        loses=("elevation unit", "attributes", "notes", "report"),
+    ),
     _make(
         *("dxf", "DXF drawing (AutoCAD and other CAD)", ".dxf"),
         losses="One unit for coordinates and elevations; the numbers of vertices; attributes of "

@@ -130,6 +130,9 @@ OutsidePolicy: TypeAlias = Literal["error", "nan", "cut"]
 ClippedPart: TypeAlias = Literal["inside", "outside"]
 """Which part of a surface clipping keeps."""
 
+IfcVersion: TypeAlias = Literal["IFC4X3", "IFC4"]
+"""The schema of a file of IFC."""
+
 DrawingContent: TypeAlias = Literal["surface", "source", "points"]
 """What is read of a drawing: triangles, the points and lines that make a surface, or points."""
 

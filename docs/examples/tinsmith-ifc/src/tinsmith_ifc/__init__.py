@@ -1,1 +1,0 @@
-"""IFC 4 for tinsmith: a format that is written, and a command that looks into such a file."""

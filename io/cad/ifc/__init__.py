@@ -1,0 +1,1 @@
+"""IFC: terrain for programs of building information modelling."""
