@@ -20,6 +20,7 @@ FORMATS = (
     _make(
         *("landxml", "LandXML (Civil 3D, Carlson, 12d, Trimble)", ".xml", ".landxml"),
         writes=(*SURFACES, "Features", "Alignment"),
+        precision="Coordinates are kept bit for bit, or to the decimals asked for.",
         losses="One unit for coordinates and elevations; of a survey attributes other than number, "
         "description and code, and erased areas; notes and report; vertices of no "
         "triangle.",

@@ -12,11 +12,12 @@ from typing import IO, TYPE_CHECKING
 import numpy as np
 
 from ....base.atomic import replacing
+from ....base.checks import require_count
 from ....base.crs import choose_wkt
 from ....base.errors import FormatError, OptionError
 from ....base.notes import warn
 from ....base.results import Features
-from ....base.sentences import FILE
+from ....base.sentences import FILE, counted
 from ....terrain import Alignment
 from ....tin import TIN, Surface, Survey
 from ...registry import select_attributes, warn_of_unknown_elevations
@@ -34,6 +35,8 @@ if TYPE_CHECKING:
     from ....tin import TIN, Survey
 
 _BATCH = 65_536
+_MOST_DECIMALS = 15
+_ROUNDING = 4 * float(np.finfo(np.float64).eps)
 _NAMESPACE = "http://www.landxml.org/schema/LandXML-1.2"
 _ROOT = (
     '<?xml version="1.0" encoding="UTF-8"?>\n'
@@ -61,6 +64,7 @@ def write(
     *,
     name: str | None = None,
     unit: UnitLike | None = None,
+    decimals: int | None = None,
     progress: Tell | None = None,
 ) -> None:
     """Write a TIN, the points and lines of a survey, contours and other lines, or an alignment.
@@ -75,13 +79,16 @@ def write(
     unit : Unit or str, optional
         Unit of coordinates and elevations, where the CRS does not tell. Without one the file has
         no units, and programs guess.
+    decimals : int, optional
+        Decimals of coordinates, for smaller files; default all digits.
 
     Raises
     ------
     FormatError
         Also if features are polygons.
     OptionError
-        If the name is no text, or the unit is not one of LandXML, or not that of the CRS.
+        If the name is no text; if the unit is not one of LandXML, or not that of the CRS; if
+        ``decimals`` are so few that triangles lose their area, or an alignment is to be rounded.
     CrsError
         If coordinates are angles.
 
@@ -91,32 +98,32 @@ def write(
         If elevations are converted, as LandXML has one unit for all lengths, or attributes are
         left out, or line breaks in texts.
     """
+    require_count("decimals", decimals, least=0, most=_MOST_DECIMALS, or_none=True)
     if isinstance(obj, Alignment):
+        if decimals is not None:
+            raise OptionError("decimals", decimals, "left out: an alignment keeps all digits")
         _write_alignment(obj, path, name, unit)
         return
     if not isinstance(obj, Surface | Survey | Features):
         raise FormatError(f"Cannot write {FILE}: a {type(obj).__name__} is no surface or survey.")
-    if name is None:
-        name = (obj.name.strip() if isinstance(obj, Surface) else "") or "surface"
-    if not isinstance(name, str) or not name.strip():
-        raise OptionError("name", name, "the name of a surface")
+    surface = _choose_name(obj, name)
     _require_lines(obj)
     along, factor = choose_length_unit(
         obj, unit, is_known=lambda one: name_unit(one) is not None, format_name="LandXML"
     )
     texts = _select_texts(obj)
+    is_lines = isinstance(obj, Features) and obj.kind != "points"
+    points = obj.coordinates if isinstance(obj, Features) else obj.points
+    points = _round(scale_elevations(points, factor), decimals)
+    if isinstance(obj, Surface) and decimals is not None:
+        _require_areas(obj, points, decimals)
     with replacing(path, binary=False) as file:
         file.write(_ROOT)
-        _write_reference(file, obj, along)
-        file.write('<Application name="tinsmith"/>\n')
-        surface = name.strip()
-        is_lines = isinstance(obj, Features) and obj.kind != "points"
-        points = scale_elevations(
-            obj.coordinates if isinstance(obj, Features) else obj.points, factor
-        )
+        _write_reference(file, obj, along, surface)
         if not isinstance(obj, Surface) and not is_lines:
             _write_points(file, points, texts)
-        source = "" if isinstance(obj, Features) and not is_lines else format_source(obj, factor)
+        has_lines = is_lines or not isinstance(obj, Features)
+        source = format_source(obj, factor, decimals) if has_lines else ""
         if source or isinstance(obj, Surface):
             file.write(f"<Surfaces>\n<Surface name={quote(surface)}>\n{source}")
             if isinstance(obj, Surface):
@@ -126,6 +133,14 @@ def write(
     if progress is not None:
         progress(1.0)
     warn_of_unknown_elevations(obj)
+
+
+def _choose_name(obj: TIN | Survey | Features, name: str | None) -> str:
+    if name is None:
+        return (obj.name.strip() if isinstance(obj, Surface) else "") or "surface"
+    if not isinstance(name, str) or not name.strip():
+        raise OptionError("name", name, "the name of a surface")
+    return name.strip()
 
 
 def _write_alignment(
@@ -139,8 +154,7 @@ def _write_alignment(
     )
     with replacing(path, binary=False) as file:
         file.write(_ROOT)
-        _write_reference(file, alignment, along)
-        file.write('<Application name="tinsmith"/>\n')
+        _write_reference(file, alignment, along, title.strip())
         file.write(format_alignment(alignment, title.strip(), factor))
         file.write("</LandXML>\n")
 
@@ -158,13 +172,23 @@ def _require_lines(obj: TIN | Survey | Features) -> None:
 
 
 def _write_reference(
-    file: IO[str], obj: TIN | Survey | Features | Alignment, unit: Unit | None
+    file: IO[str], obj: TIN | Survey | Features | Alignment, unit: Unit | None, name: str
 ) -> None:
+    """Write units, CRS, project and application, in the order of the schema."""
+    _write_units(file, unit)
+    _write_crs(file, obj)
+    file.write(f'<Project name={quote(name)}/>\n<Application name="tinsmith"/>\n')
+
+
+def _write_units(file: IO[str], unit: Unit | None) -> None:
     names = None if unit is None else name_unit(unit)
     if names is not None:
         system, name = names
         units = _OTHER_UNITS[system].format(name)
         file.write(f"<Units>\n<{system} {units} {_ANGLES}/>\n</Units>\n")
+
+
+def _write_crs(file: IO[str], obj: TIN | Survey | Features | Alignment) -> None:
     if obj.crs is None:
         return
     crs = obj.crs
@@ -184,6 +208,23 @@ def _write_reference(
 
 
 # ------------------------------------------------------------------ surface
+
+
+def _round(rows: Float64Array, decimals: int | None) -> Float64Array:
+    return rows if decimals is None else np.round(rows, decimals)
+
+
+def _require_areas(tin: TIN, rounded: Float64Array, decimals: int) -> None:
+    """Refuse decimals so few that triangles turn over or lose their area."""
+    xy = rounded[:, :2] - rounded[:, :2].min(axis=0)
+    steps = np.rint(xy * 10.0**decimals)  # whole numbers, of which differences are exact
+    a, b, c = (steps[tin.triangles[:, corner]] for corner in range(3))
+    (ux, uy), (vx, vy) = (b - a).T, (c - a).T
+    left, right = ux * vy, uy * vx
+    wrong = left - right <= _ROUNDING * (np.abs(left) + np.abs(right))
+    if wrong.any():
+        what = counted(int(wrong.sum()), "triangle")
+        raise OptionError("decimals", decimals, f"more: {what} would lose area or turn over")
 
 
 def _write_definition(
@@ -282,7 +323,7 @@ _BOUNDARIES = {"boundary": ("outer", "void"), "hole": ("void", "island")}
 """Of the outer ring of a polygon, and of those in it."""
 
 
-def format_source(obj: TIN | Survey | Features, factor: float) -> str:
+def format_source(obj: TIN | Survey | Features, factor: float, decimals: int | None = None) -> str:
     """Return lines as the source data of a surface; empty if there are none.
 
     Lines of features that have one elevation are contours. A feature of each line of a TIN tells
@@ -291,7 +332,10 @@ def format_source(obj: TIN | Survey | Features, factor: float) -> str:
     found: dict[str, list[str]] = {"Boundaries": [], "Breaklines": [], "Contours": []}
     seen = set()
     for number, line in enumerate(list_lines(obj, factor)):
-        rows, extra = line.coordinates, {} if line.kind == "hard" else {KIND: line.kind}
+        rows, extra = (
+            _round(line.coordinates, decimals),
+            {} if line.kind == "hard" else {KIND: line.kind},
+        )
         if isinstance(obj, Surface):
             extra |= {LINE: str(number), SOURCE: str(line.source)}
         elif line.priority:

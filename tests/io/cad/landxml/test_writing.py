@@ -162,3 +162,61 @@ def test_the_command_line_keeps_and_sets_the_name(tmp_path):
         )
         assert done.exit_code == 0, done.output
         assert f'<Surface name="{name}">' in (tmp_path / "b.xml").read_text()
+
+
+def test_what_receivers_of_machine_control_ask_for(survey, tmp_path):
+    """Units, project and application first, one surface, ids from 1 on, no invisible faces."""
+    tin = ts.triangulate(survey)
+    root = ET.parse(ts.write(tin, tmp_path / "a.xml", name="EG")).getroot()
+    tags = [one.tag.removeprefix(SPACE) for one in root]
+    assert tags == ["Units", "CoordinateSystem", "Project", "Application", "Surfaces"]
+    assert root.find(f"{SPACE}Project").get("name") == "EG"
+    (surface,) = root.iter(f"{SPACE}Surface")
+    assert surface.get("name") == "EG"
+    ids = [int(one.get("id")) for one in root.iter(f"{SPACE}P")]
+    assert ids == list(range(1, len(tin.points) + 1))
+    faces = list(root.iter(f"{SPACE}F"))
+    assert all(set(one.attrib) <= {"b"} for one in faces)
+    corners = np.array([one.text.split() for one in faces], int)
+    assert corners.shape == (len(tin.triangles), 3)
+    assert {*corners.ravel().tolist()} <= {*ids}
+
+
+def test_fewer_decimals_make_smaller_files_of_the_same_triangles(survey, tmp_path):
+    tin = ts.triangulate(survey.points + np.array([0.123456789, 1 / 3, 1 / 7]), crs=survey.crs,
+                         elevation_unit="m", breaklines=survey.breaklines[:1])  # fmt: skip
+    whole = ts.write(tin, tmp_path / "a.xml")
+    path = ts.write(tin, tmp_path / "b.xml", decimals=4)
+    assert path.stat().st_size < 0.85 * whole.stat().st_size
+    read = ts.read(path)
+    assert np.array_equal(read.points, np.round(tin.points, 4))
+    assert np.array_equal(read.triangles, tin.triangles)
+    assert read.lines.vertices.tolist() == tin.lines.vertices.tolist()
+    longest = max(len(word.partition(".")[2]) for one in ET.parse(path).getroot().iter(f"{SPACE}P")
+                  for word in one.text.split())  # fmt: skip
+    assert longest == 4
+    points = ts.write(ts.Survey(points=tin.points), tmp_path / "c.xml", decimals=2, unit="m")
+    assert np.array_equal(ts.read(points).points, np.round(tin.points, 2))
+
+
+@pytest.mark.parametrize("decimals", [-1, 16, 1.5, True, "2"])
+def test_decimals_that_are_none_are_refused(survey, tmp_path, decimals):
+    with pytest.raises(ts.OptionError, match="decimals"):
+        ts.write(ts.triangulate(survey), tmp_path / "a.xml", decimals=decimals)
+
+
+@pytest.mark.parametrize(("rows", "decimals"), [(3, 0), (2, 1)])
+def test_decimals_so_few_that_triangles_vanish_are_refused(tmp_path, rows, decimals):
+    step = 10.0**-decimals / 4
+    xy = np.array([[x, y] for x in range(rows) for y in range(rows)]) * step + 500_000
+    tin = ts.triangulate(np.column_stack([xy, xy[:, 0]]), elevation_unit="m")
+    with pytest.raises(ts.OptionError, match="triangles would lose area or turn over"):
+        ts.write(tin, tmp_path / "a.xml", decimals=decimals)
+    assert not (tmp_path / "a.xml").exists()
+    ts.write(tin, tmp_path / "a.xml", decimals=decimals + 2)
+
+
+def test_alignments_are_not_rounded(tmp_path):
+    axis = ts.Alignment.from_points([[0, 0], [100, 0], [200, 50]])
+    with pytest.raises(ts.OptionError, match="an alignment keeps all digits"):
+        ts.write(axis, tmp_path / "a.xml", decimals=2)
