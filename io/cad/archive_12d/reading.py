@@ -126,7 +126,8 @@ def _gather_points(found: Content) -> Float64Array:
     """Return the vertices of strings that are points, those with an elevation."""
     parts = [one.rows for one in found.strings if not one.is_line or len(one.rows) == 1]
     points = np.concatenate([np.empty((0, 3)), *parts])
-    return points[~np.isnan(points[:, 2])]
+    kept: Float64Array = points[~np.isnan(points[:, 2])]
+    return kept
 
 
 def _list_lines(found: Content) -> list[Line]:

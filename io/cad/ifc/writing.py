@@ -19,7 +19,9 @@ import numpy as np
 from ....base.atomic import replacing
 from ....base.crs import METRE, choose_wkt
 from ....base.errors import OptionError, choice
+from ....base.notes import warn
 from ....base.policies import IfcVersion
+from ....base.sentences import FILE
 from ...mesh.common import require_tin
 from ..drawing import choose_length_unit, list_lines, scale_elevations
 from .step import (
@@ -99,7 +101,8 @@ def write(
     Warns
     -----
     LossWarning
-        If elevations are converted, as the file has one unit for all lengths, or none are known.
+        If elevations are converted, as the file has one unit for all lengths, or their unit is not
+        known.
     """
     choice("version", version, IfcVersion)
     tin = require_tin(surface, format_name="IFC")
@@ -107,6 +110,8 @@ def write(
     if not isinstance(name, str) or not name.strip():
         raise OptionError("name", name, "the name of the terrain")
     along, factor = choose_length_unit(tin, unit, is_known=_has_metres, format_name="IFC")
+    if along is not None and unit is None and tin.elevation_unit is None:
+        warn(f"{FILE}: the unit of elevations is not known, and is told to be {along.name}.")
     points = scale_elevations(tin.points, factor)
     origin = np.floor(points.min(axis=0))
     title = quote(name.strip())

@@ -213,13 +213,15 @@ def _choose_frame(frames: AnyArray, which: int, name: str, wanted: int | None) -
         require_count("frame", wanted, least=1)
         if wanted > len(frames):
             raise OptionError("frame", wanted, f"a frame of the file, 1 to {len(frames)}")
-        return values[wanted - 1]
+        chosen: AnyArray = values[wanted - 1]
+        return chosen
     if len(frames) > 1 and any((row != values[0]).any() for row in values[1:]):
         raise ReadError(
             f"{FILE} holds {len(frames)} frames, between which {name} changes: name one by "
             f"`frame`, 1 to {len(frames)}."
         )
-    return values[0]
+    first: AnyArray = values[0]
+    return first
 
 
 def _parse_unit(text: str) -> str | None:

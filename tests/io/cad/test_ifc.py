@@ -139,6 +139,12 @@ def test_a_file_without_units_is_told(tmp_path):
     assert named.by_type("IfcConversionBasedUnit")[0].Name == "FOOT"
 
 
+def test_an_unknown_unit_of_elevations_is_told_where_the_crs_has_one(tmp_path):
+    with pytest.warns(ts.LossWarning, match="unit of elevations is not known, and is told to be m"):
+        ts.write(make(UTM, None), tmp_path / "a.ifc")
+    ts.write(make(UTM, None), tmp_path / "b.ifc", unit="m")  # which is one, without a word
+
+
 def test_the_same_bytes_and_identifiers_that_differ_between_surfaces(tmp_path):
     tin = make()
     first = ts.write(tin, tmp_path / "a.ifc").read_bytes()
