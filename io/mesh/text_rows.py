@@ -52,6 +52,11 @@ class TextRows:
         """Return the rows from one to before another."""
         return TextRows(self.texts[start:stop], self.lines[start:stop])
 
+    def pick(self, numbers: Iterable[int]) -> TextRows:
+        """Return some rows by their numbers, of which one may come several times."""
+        kept = list(numbers)
+        return TextRows([self.texts[k] for k in kept], [self.lines[k] for k in kept])
+
     def parse_plain(self, columns: slice, dtype: type[np.generic]) -> AnyArray | None:
         """Return the numbers in some columns at once; None where a row is not plain."""
         if not self.texts:
@@ -114,8 +119,7 @@ class TextRows:
     def select(self, keyword: str) -> TextRows:
         """Return the rows that begin with a word."""
         starts = (f"{keyword} ", f"{keyword}\t")
-        kept = [k for k, text in enumerate(self.texts) if text.startswith(starts)]
-        return TextRows([self.texts[k] for k in kept], [self.lines[k] for k in kept])
+        return self.pick(k for k, text in enumerate(self.texts) if text.startswith(starts))
 
     def sort_by_keyword(self) -> dict[str, TextRows]:
         """Return the rows that begin with each word."""

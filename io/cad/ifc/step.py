@@ -119,12 +119,12 @@ def format_rows(rows: AnyArray) -> Iterable[str]:
 
 
 def make_identifier(*words: str) -> str:
-    """Return an identifier that is the same for the same words: 128 bits in base 64.
+    """Return an identifier in quotes, the same for the same words: 128 bits in base 64.
 
     Examples
     --------
     >>> make_identifier("site") == make_identifier("site"), len(make_identifier("site"))
-    (True, 22)
+    (True, 24)
     """
     number = uuid.uuid5(uuid.NAMESPACE_URL, "/".join(("tinsmith", *words))).int
     letters = [_DIGITS[number >> 6 * k & 63] for k in reversed(range(_LENGTH))]

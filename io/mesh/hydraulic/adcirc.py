@@ -20,7 +20,7 @@ from ....base.sentences import FILE, counted
 from .. import common
 from ..common import Mesh, mesh_reader
 from ..linework import add_lines
-from ..text_rows import TextRows, format_rows, parse_integers, split_rows, write_batches
+from ..text_rows import format_rows, parse_integers, split_rows, write_batches
 from .boundaries import list_boundaries, parse_boundaries
 from .nodes import find_nodes, require_distinct
 
@@ -31,6 +31,7 @@ if TYPE_CHECKING:
     from ....base.arrays import Float64Array, Int64Array
     from ....base.progress import Tell
     from ....tin import TIN
+    from ..text_rows import TextRows
 
 Sense = Literal["down", "up"]
 
@@ -129,7 +130,7 @@ def _parse_elements(rows: TextRows, numbers: Int64Array) -> tuple[Int64Array, In
         at = np.flatnonzero(sizes == size)
         if not len(at):
             continue
-        own = TextRows([rows.texts[k] for k in at], [rows.lines[k] for k in at])
+        own = rows.pick(at.tolist())
         what = f"an element of {size} corners needs {size} nodes"
         nodes = find_nodes(own.parse_integers(slice(2, size + 2), what), numbers, own)
         corners[offsets[at][:, None] + np.arange(size)] = nodes

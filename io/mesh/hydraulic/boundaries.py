@@ -19,7 +19,7 @@ import numpy as np
 from ....base.errors import ReadError
 from ....base.sentences import FILE, counted
 from ..linework import Chain
-from ..text_rows import TextRows, parse_integers
+from ..text_rows import parse_integers
 from .nodes import find_nodes
 
 if TYPE_CHECKING:
@@ -27,6 +27,7 @@ if TYPE_CHECKING:
 
     from ....base.arrays import BoolArray, Int64Array
     from ....tin import TIN
+    from ..text_rows import TextRows
 
 OPEN = "open"
 """Name of a line that is an open boundary; one of land is called ``land 20`` by its type."""
@@ -109,8 +110,7 @@ def _find_sides(rows: TextRows, segments: list[_Rows], numbers: Int64Array) -> l
                 named += parse_integers(words, rows.lines[row])
                 told.append(row)
             ends.append((len(named), kind))
-    called = TextRows([rows.texts[row] for row in told], [rows.lines[row] for row in told])
-    found = find_nodes(np.array(named, np.int64).reshape(-1, 1), numbers, called).ravel()
+    found = find_nodes(np.array(named, np.int64).reshape(-1, 1), numbers, rows.pick(told)).ravel()
     chains, start = [], 0
     for end, kind in ends:
         nodes = found[start:end]

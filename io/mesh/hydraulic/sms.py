@@ -68,22 +68,7 @@ def read(path: Path) -> Mesh:
     found = [_parse_elements(card, cards[card], numbers) for card in _FACES if card in cards]
     if not found:
         return Mesh(points)
-    rows = cards.get("NS", TextRows())
-    strings: list[Chain] = []
-    open_nodes: list[int] = []
-    for i, (text, line) in enumerate(zip(rows.texts, rows.lines, strict=True)):
-        words = text.split()
-        for at, word in enumerate(words[1:], start=1):
-            node = parse_integers([word], line)[0]
-            called = np.array([[abs(node)]], np.int64)
-            open_nodes.append(int(find_nodes(called, numbers, rows.cut(i, i + 1))[0, 0]))
-            if node < 0:
-                name = words[at + 1] if at + 1 < len(words) else ""
-                strings.append(Chain(np.array(open_nodes), None, name))
-                open_nodes = []
-                break
-    if open_nodes:
-        strings.append(Chain(np.array(open_nodes)))
+    strings = _parse_strings(cards.get("NS", TextRows()), numbers)
     return Mesh(
         points,
         np.concatenate([corners for corners, _ in found]),
@@ -102,6 +87,30 @@ def _parse_elements(
     nodes = find_nodes(rows.parse_integers(slice(2, count + 2), what), numbers, rows)
     corners = nodes[:, [slot for polygon in polygons for slot in polygon]].ravel()
     return corners, np.tile([len(polygon) for polygon in polygons], len(nodes))
+
+
+def _parse_strings(rows: TextRows, numbers: Int64Array) -> list[Chain]:
+    """Return node strings: each ends in a negative number, behind which its name may stand."""
+    named: list[int] = []
+    told: list[int] = []
+    ends: list[tuple[int, str]] = []
+    for row, (text, line) in enumerate(zip(rows.texts, rows.lines, strict=True)):
+        words = text.split()
+        for at, word in enumerate(words[1:], start=1):
+            (node,) = parse_integers([word], line)
+            named.append(abs(node))
+            told.append(row)
+            if node < 0:
+                ends.append((len(named), words[at + 1] if at + 1 < len(words) else ""))
+                break
+    if named and (not ends or ends[-1][0] < len(named)):
+        ends.append((len(named), ""))
+    nodes = find_nodes(np.array(named, np.int64).reshape(-1, 1), numbers, rows.pick(told)).ravel()
+    starts = [0, *(end for end, _ in ends)]
+    return [
+        Chain(nodes[start:end], None, name)
+        for start, (end, name) in zip(starts, ends, strict=False)
+    ]
 
 
 def _describe_losses(cards: dict[str, TextRows]) -> list[str]:

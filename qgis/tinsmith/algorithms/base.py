@@ -31,7 +31,8 @@ EXTRA = "EXTRA"
 LOAD = "LOAD"
 MESH_FILES = (
     "UGRID mesh (*.nc);;PLY mesh (*.ply);;2DM mesh (*.2dm);;GeoPackage of a whole TIN (*.gpkg);;"
-    "LandXML (*.xml);;DXF drawing (*.dxf);;Any other (*.*)"
+    "LandXML (*.xml);;DXF drawing (*.dxf);;12d Model (*.12da);;IFC (*.ifc);;ADCIRC (*.14);;"
+    "SCHISM (*.gr3);;Selafin (*.slf);;Any other (*.*)"
 )
 TABLE_FILES = "CSV table (*.csv);;JSON table (*.json)"
 PICTURES = "PNG picture (*.png)"

@@ -17,8 +17,8 @@ class ConvertAlgorithm(CommandAlgorithm):
     summary = "Writes a TIN as a TIN, or points as points, in another format."
     explanation = (
         "The suffix of the output chooses the format: .gpkg, .ply, .nc, .2dm, .xml (LandXML), "
-        ".dxf, .obj, .stl, .glb, .geojson, .shp, .fgb, .csv, .laz and more, as "
-        "'tinsmith formats' lists. "
+        ".dxf, .12da, .ifc, .14, .gr3, .slf, .obj, .stl, .glb, .geojson, .shp, .fgb, .csv, "
+        ".laz and more, as 'tinsmith formats' lists. "
         "A TIN is not reprojected, since its triangles would be no Delaunay triangles there."
     )
     surfaces = (Surface(words="TIN or points"),)
