@@ -83,8 +83,8 @@ def write(
         ``columns``, ``delimiter``, ``header``, ``decimals``; of rasters ``dtype``, ``nodata``,
         ``overviews``, ``compression``, ``band``; of vector files ``kind``, ``layer``, ``append``,
         ``overwrite``, ``compact``, ``projected``, ``multipatch``; of LandXML and DXF ``name``,
-        ``unit``, ``version``, ``labels``, ``label_height``; of meshes ``ortho``, ``exaggeration``, ``scale``,
-        ``solid``, ``thickness``, ``size``, ``precision``, ``max_level``, ``gzipped``,
+        ``unit``, ``version``, ``labels``, ``label_height``; of meshes ``ortho``, ``exaggeration``,
+        ``scale``, ``solid``, ``thickness``, ``size``, ``precision``, ``max_level``, ``gzipped``,
         ``positive``.
 
     Returns

@@ -10,7 +10,7 @@ import numpy as np
 from ....base.errors import OptionError, ReadError, choice
 from ....base.policies import DrawingContent, FacePolicy, LineKind
 from ....base.sentences import FILE, counted, inflect, shown
-from ...mesh.common import read_content
+from ...mesh import read_content
 from ..drawing import Drawing
 from ..reference import Declared, Stated, choose_measures
 from ..surfaces import Line, Mesh

@@ -14,9 +14,8 @@ from ....base.atomic import replacing
 from ....base.errors import FormatError, OptionError
 from ....base.sentences import FILE
 from ....tin import TIN, Surface, Survey
-from ...mesh.linework import list_chains
-from ...mesh.text_rows import format_rows
-from ...registry.losses import warn_of_lost_attributes
+from ...mesh import format_rows, list_chains
+from ...registry import warn_of_lost_attributes
 from ..drawing import choose_length_unit, list_lines, scale_elevations
 from ..surfaces import Line
 from .names import CONSTRAINED, KIND, POLYGON, PRIORITY, SOURCE

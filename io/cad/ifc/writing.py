@@ -22,7 +22,7 @@ from ....base.errors import OptionError, choice
 from ....base.notes import warn
 from ....base.policies import IfcVersion
 from ....base.sentences import FILE
-from ...mesh.common import require_tin
+from ...mesh import require_tin
 from ..drawing import choose_length_unit, list_lines, scale_elevations
 from .step import (
     DERIVED,
@@ -141,7 +141,7 @@ def write(
         )
         own = _add_place(step, place, [0.0, 0.0, 0.0])
         elements = [
-            _add_terrain(frame, tin, points, title, own),
+            _add_terrain(frame, tin, points, title=title, place=own),
             *_add_lines(frame, tin, factor, own),
         ]
         step.add("IFCRELAGGREGATES", identify("whole"), *[NONE] * 3, project, format_list([site]))
@@ -204,7 +204,7 @@ def _add_crs(frame: _Frame, crs: CRS, along: Unit) -> None:
     step.add("IFCMAPCONVERSION", frame.context, target, *place, *[NONE] * 3)
 
 
-def _add_terrain(frame: _Frame, tin: TIN, points: Float64Array, title: str, place: str) -> str:
+def _add_terrain(frame: _Frame, tin: TIN, points: Float64Array, *, title: str, place: str) -> str:
     step = frame.step
     corners = _add_points(frame, points)
     parts = _format_triangles(tin, corners, has_flags=frame.version == "IFC4X3")
