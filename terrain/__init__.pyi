@@ -28,6 +28,7 @@ from .earthwork.grading import merge as merge
 from .earthwork.grading import paste as paste
 from .gridding import height_above as height_above
 from .gridding import rasterize as rasterize
+from .gridding import rasterize_canopy as rasterize_canopy
 from .gridding import rasterize_counts as rasterize_counts
 from .gridding import rasterize_heights as rasterize_heights
 from .gridding.shading import hillshade as hillshade

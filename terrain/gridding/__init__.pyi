@@ -1,5 +1,6 @@
 # Names that other packages use, each with the module that has it.
 from .bands import SurfaceBand as SurfaceBand
+from .canopies import rasterize_canopy as rasterize_canopy
 from .grids import Cells as Cells
 from .grids import as_cells as as_cells
 from .grids import as_parts as as_parts
@@ -10,6 +11,11 @@ from .grids import require_cells as require_cells
 from .grids import require_overlap as require_overlap
 from .grids import to_grid as to_grid
 from .ground_heights import height_above as height_above
+from .operators import GridMeasure as GridMeasure
+from .operators import OPERATORS as OPERATORS
+from .operators import OperatorBand as OperatorBand
+from .operators import describe_no_value as describe_no_value
+from .operators import make_measure as make_measure
 from .point_cells import CellBlock as CellBlock
 from .point_cells import add_cells as add_cells
 from .point_cells import count_points as count_points
@@ -22,6 +28,7 @@ from .point_rasters import rasterize_heights as rasterize_heights
 from .point_rasters import require_points as require_points
 from .rasters import list_units as list_units
 from .rasters import rasterize as rasterize
+from .rasters import require_sample as require_sample
 from .relief_bands import DESCRIBED_MEANS as DESCRIBED_MEANS
 from .relief_bands import ReliefBand as ReliefBand
 from .relief_bands import describe_smooth as describe_smooth

@@ -80,7 +80,7 @@ def rasterize_counts(
         cells,
         crs=None if crs is None else crs.horizontal,
         name="count",
-        notes=[*_list_notes(survey), *notes],
+        notes=[*list_notes(survey), *notes],
     )
 
 
@@ -151,7 +151,7 @@ def rasterize_heights(
         units={"height": tin.elevation_unit},
         name="height",
         notes=[
-            *(f"The points above: {note}" for note in _list_notes(cloud)),
+            *(f"The points above: {note}" for note in list_notes(cloud)),
             *noted,
             *notes,
             *describe_points_outside(outside, len(points)),
@@ -159,7 +159,8 @@ def rasterize_heights(
     )
 
 
-def _list_notes(points: Survey | ArrayLike) -> list[str]:
+def list_notes(points: Survey | ArrayLike) -> list[str]:
+    """Return what is known of points, with rows that were left out."""
     if not isinstance(points, Survey):
         return []
     return [*points.notes, *describe_skipped(points.skipped)]

@@ -16,7 +16,7 @@ import numpy as np
 from ...base.errors import OptionError
 from ...base.results import locate_centers
 from ...base.types import Bounds
-from ..gridding import ReliefBand, SurfaceBand, locate_edges
+from ..gridding import GridMeasure, OperatorBand, ReliefBand, SurfaceBand, locate_edges
 from ..surface import Light, PlaneMeasure
 from .surfaces import as_surface
 
@@ -38,6 +38,8 @@ class RasterOptions(NamedTuple):
     grid: Grid
     value: RasterValue = "elevation"
     is_smooth: bool = False
+    of_cells: GridMeasure | None = None
+    """What is measured of cells and their neighbours, in place of the surface."""
     at: RasterSample = "center"
     light: Light = Light(315.0, 45.0)
     exaggeration: float = 1.0
@@ -56,7 +58,8 @@ class RasterBlock(NamedTuple):
 
 def count_rings(options: RasterOptions) -> int:
     """Return how many rings of triangles are needed around those that meet the cells' centres."""
-    return int(options.is_smooth and options.value != "elevation" and options.at == "center")
+    is_relief = options.value != "elevation" and options.of_cells is None
+    return int(options.is_smooth and is_relief and options.at == "center")
 
 
 def find_cells(grid: Grid, box: Bounds) -> tuple[slice, slice]:
@@ -94,8 +97,13 @@ def _count_before(grid: Grid, limit: float, count: int, axis: int) -> int:
 def find_reach(options: RasterOptions, rows: slice, columns: slice) -> Bounds:
     """Return the box of which a part is needed for cells, one at least: that of their centres.
 
-    For means it is that of the cells.
+    For means it is that of the cells. Values of cells and their neighbours need one cell more.
     """
+    if options.of_cells is not None:
+        rows, columns = (
+            slice(max(0, part.start - 1), min(side, part.stop + 1))
+            for part, side in zip((rows, columns), options.grid.shape, strict=True)
+        )
     locate = locate_centers if options.at == "center" else locate_edges
     x, y = locate(options.grid, rows, columns)
     return Bounds(float(x[0]), float(y[-1]), float(x[-1]), float(y[0]))
@@ -108,7 +116,8 @@ def compute_part(part: LocalTriangulation, box: Bounds, options: RasterOptions) 
     ----------
     part : LocalTriangulation
         All triangles that meet :func:`find_reach` of these cells, with :func:`count_rings` rings
-        of triangles around them. For values at centres this is no larger than the box.
+        of triangles around them. For values at centres this is no larger than the box, but where
+        neighbours count.
     box : Bounds
     options : RasterOptions
     """
@@ -128,9 +137,13 @@ def compute_block(
 def _make_band(part: LocalTriangulation, options: RasterOptions) -> Any:
     tin = as_surface(part, options.crs, options.elevation_unit)
     how: dict[str, Any] = {"is_mean": options.at == "mean", "threads": options.threads}
-    if options.value == "elevation":
-        return SurfaceBand(tin, options.grid, None, method="linear", **how)
-    measure = PlaneMeasure(options.value, options.light, options.exaggeration)
+    if options.value == "elevation" or options.of_cells is not None:
+        band = SurfaceBand(tin, options.grid, None, method="linear", **how)
+        if options.of_cells is None:
+            return band
+        return OperatorBand(band, options.grid, options.of_cells)
+    plane: Any = options.value
+    measure = PlaneMeasure(plane, options.light, options.exaggeration)
     return ReliefBand(tin, options.grid, measure, is_smooth=options.is_smooth, **how)
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -13,6 +13,7 @@ from ...base.policies import CurvatureKind, SurfacePart
 from ...base.products import product
 from ...tin.validation import thread_count
 from .. import _kernel
+from ..surface import Derivatives, measure_curvatures
 
 if TYPE_CHECKING:
     from ...base.arrays import Float64Array
@@ -20,16 +21,6 @@ if TYPE_CHECKING:
 
 _CHUNK = 1 << 15
 """Vertices whose curvature is computed at a time, so that what is between stays in the cache."""
-
-
-class _Derivatives(NamedTuple):
-    """First and second derivatives of the elevation, to the east (x) and the north (y)."""
-
-    x: Float64Array
-    y: Float64Array
-    xx: Float64Array
-    xy: Float64Array
-    yy: Float64Array
 
 
 @product
@@ -98,7 +89,7 @@ def curvature(
     for start in range(0, len(found), _CHUNK):
         rows = slice(start, start + _CHUNK)
         with np.errstate(over="ignore", invalid="ignore"):  # refused below
-            found[rows] = _FORMULAS[kind](_Derivatives(*derivatives[:, rows]))
+            found[rows] = measure_curvatures(kind, Derivatives(*derivatives[:, rows]))
     if np.isinf(derivatives).any() or np.isinf(found).any():
         raise PointsError(
             "Elevations are too large, or points too near to each other, for curvatures in double "
@@ -107,62 +98,3 @@ def curvature(
     if per == "triangle":
         found = found[tin.triangles].mean(axis=1)
     return found
-
-
-# ------------------------------------------------------------------------------ formulas
-
-
-# In the direction (x, y) / hypot(x, y) of the gradient and in its secant hypot(1, x, y), rather
-# than in powers of x and y: these overflow where it is steep.
-
-
-def _compute_profile(d: _Derivatives) -> Float64Array:
-    x, y = _find_direction(d)
-    secant = _measure_secant(d)
-    return -(d.xx * x**2 + 2 * d.xy * x * y + d.yy * y**2) / secant / secant / secant
-
-
-def _compute_plan(d: _Derivatives) -> Float64Array:
-    with np.errstate(invalid="ignore", divide="ignore"):  # NaN where it is level
-        return -_sum_across(d) / np.hypot(d.x, d.y)
-
-
-def _compute_tangential(d: _Derivatives) -> Float64Array:
-    return -_sum_across(d) / _measure_secant(d)
-
-
-def _compute_mean(d: _Derivatives) -> Float64Array:
-    secant = _measure_secant(d)
-    x, y, up = d.x / secant, d.y / secant, 1 / secant
-    bend = (up**2 + y**2) * d.xx - 2 * x * y * d.xy + (up**2 + x**2) * d.yy
-    return -bend / (2 * secant)
-
-
-def _compute_gaussian(d: _Derivatives) -> Float64Array:
-    secant = _measure_secant(d)
-    xx, xy, yy = (side / secant / secant for side in (d.xx, d.xy, d.yy))
-    return xx * yy - xy**2
-
-
-def _find_direction(d: _Derivatives) -> tuple[Float64Array, Float64Array]:
-    """Return the unit vector of the gradient; NaN where it is 0."""
-    with np.errstate(invalid="ignore"):
-        return d.x / np.hypot(d.x, d.y), d.y / np.hypot(d.x, d.y)
-
-
-def _measure_secant(d: _Derivatives) -> Float64Array:
-    return np.hypot(1.0, np.hypot(d.x, d.y))
-
-
-def _sum_across(d: _Derivatives) -> Float64Array:
-    x, y = _find_direction(d)
-    return np.asarray(d.xx * y**2 - 2 * d.xy * x * y + d.yy * x**2)
-
-
-_FORMULAS = {
-    "profile": _compute_profile,
-    "plan": _compute_plan,
-    "tangential": _compute_tangential,
-    "mean": _compute_mean,
-    "gaussian": _compute_gaussian,
-}

@@ -2,6 +2,7 @@
 
 from ...base.georeference import Reference
 from .breaks import CROSSED, Breaks, Segments, as_segments, trace_breaks
+from .curvatures import Derivatives, measure_curvatures
 from .dissolving import (
     DividedMesh,
     Mesh,
@@ -70,6 +71,7 @@ from .voids import find_border, find_surface, trace_cycles, trace_rings
 __all__ = [
     "CROSSED",
     "Breaks",
+    "Derivatives",
     "DividedMesh",
     "Light",
     "Mesh",
@@ -110,6 +112,7 @@ __all__ = [
     "make_reference",
     "measure_areas",
     "measure_aspects",
+    "measure_curvatures",
     "measure_lengths",
     "measure_plane_areas",
     "measure_ring_area",

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
     from ...base.arrays import Float64Array, Int32Array, UInt8Array
     from ...base.crs import CRS
-    from ...base.policies import RasterValue
+    from ...base.policies import PlaneValue
     from ...tin import TIN, Surface
 
 DARKEST, BRIGHTEST = 1, 255
@@ -208,7 +208,7 @@ def normalise(vectors: Float64Array) -> Float64Array:
 class PlaneMeasure(NamedTuple):
     """What is measured of a plane: degrees of slope or aspect, or light from 1 to 255."""
 
-    value: RasterValue
+    value: PlaneValue
     light: Light
     exaggeration: float = 1.0
 

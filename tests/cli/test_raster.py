@@ -51,6 +51,11 @@ def test_the_cells_of_another_raster(tmp_path, surface):
         (("--spacing", "1e-4"), 2, "(--spacing)"),
         (("--spacing", 1, "--at", "mean", "--method", "natural"), 2, "Invalid --at"),
         (("--spacing", 1, "--value", "height"), 2, "height"),
+        (("--spacing", 1, "--operator", "horn"), 2, "Invalid --operator 'horn'"),
+        (("--spacing", 1, "--value", "tri", "--operator", "horn"), 2, "riley or wilson"),
+        (("--spacing", 1, "--compute-edges"), 2, "Invalid --compute-edges"),
+        (("--spacing", 1, "--value", "count", "--compute-edges"), 2, "--compute-edges is of"),
+        (("--spacing", 90, "--value", "tpi"), 1, "No cell has a value of tpi"),
         (("--like", "missing.tif"), 1, "There is no file 'missing.tif'"),
     ],
 )
@@ -82,3 +87,17 @@ def test_the_raster_of_like_is_never_overwritten(tmp_path, surface):
     before = path.read_bytes()
     assert run("raster", surface, "--like", path, "-o", path).exit_code == 2
     assert path.read_bytes() == before
+
+
+def test_an_operator_of_cells_is_chosen_by_a_word(tmp_path, surface):
+    path = tmp_path / "slope.tif"
+    options = ("--spacing", 2, "--value", "slope", "--operator", "horn", "--compute-edges")
+    out = run("raster", surface, *options, "-o", path, "--json")
+    assert out.exit_code == 0, out.output
+    wanted = ts.rasterize(
+        ts.read(surface), spacing=2, value="slope", operator="horn", compute_edges=True
+    )
+    assert wanted.notes[-1] in json.loads(out.stdout)["notes"]
+    with rasterio.open(path) as file:
+        np.testing.assert_array_equal(file.read(1), wanted.bands["slope"])
+        assert file.units == ("°",)

@@ -203,6 +203,40 @@ def test_heights_leave_noise_out_unless_it_is_asked_for(lidar, here):
         assert found[0] < 5.0 < 490.0 < found[1]
 
 
+def test_surface_terrain_and_canopy_height_are_three_bands_of_one_command(lidar, here):
+    words = ["raster", lidar, "--classes", "2", "--value", "canopy", "--spacing", "5", "--json"]
+    done = run(*words, "-o", "canopy.tif")
+    assert done.exit_code == 0, done.output
+    ground = ts.triangulate(ts.read(lidar, classes=2))
+    classes = [number for number in range(256) if number not in (7, 18)]
+    wanted = ts.rasterize_canopy(ground, ts.read(lidar, classes=classes), spacing=5)
+    with rasterio.open("canopy.tif") as file:
+        assert file.descriptions == ("dsm", "dtm", "chm")
+        for number, values in enumerate(wanted.bands.values(), start=1):
+            np.testing.assert_array_equal(file.read(number), values)
+    told = json.loads(done.stdout)
+    assert told["bands"] == ["dsm", "dtm", "chm"]
+    assert set(wanted.notes) <= set(told["notes"])
+    done = run(*words, "-o", "tiled.tif", "--tiles", 3)
+    assert done.exit_code == 1
+    assert "Tiles cannot be computed with --value canopy: all points are needed" in done.output
+
+
+def test_the_ground_below_a_canopy_is_found_where_no_class_tells_it(here):
+    x, y = (axis.ravel() for axis in np.meshgrid(np.arange(40.0), np.arange(40.0)))
+    house = (abs(x - 20) < 6) & (abs(y - 20) < 6)
+    points = np.column_stack([x + 500_000, y + 4_000_000, np.where(house, 6.0, 0.0)])
+    ts.write(ts.Survey(points=points, crs="EPSG:32616"), here / "cloud.laz")
+    words = ["raster", "cloud.laz", "--find-ground", "--value", "canopy", "--spacing", 1]
+    done = run(*words, "-o", "canopy.tif", "--json")
+    assert done.exit_code == 0, done.output
+    with rasterio.open("canopy.tif") as file:
+        height = file.read(3)
+    assert sorted(set(np.round(height[np.isfinite(height)], 6).tolist())) == [0.0, 6.0]
+    assert (np.round(height, 6) == 6.0).sum() == house.sum()
+    assert any("not ground" in note for note in json.loads(done.stdout)["notes"])
+
+
 @pytest.mark.parametrize("more", [[], ["--tiles", "3"]])
 @pytest.mark.parametrize(
     ("words", "sentence"),
@@ -212,6 +246,10 @@ def test_heights_leave_noise_out_unless_it_is_asked_for(lidar, here):
         (["--value", "count", "--at", "mean"], "--at is of surfaces"),
         (["--value", "count", "--boundary", "LIDAR"], "--boundary is of surfaces"),
         (["--value", "height", "--classes", "2", "--method", "natural"], "--method is of"),
+        (["--value", "canopy"], "--value canopy needs to know the ground"),
+        (["--value", "canopy", "--classes", "2", "--find-ground"], "give one of them"),
+        (["--value", "canopy", "--find-ground", "--operator", "horn"], "--operator is of"),
+        (["--value", "slope", "--find-ground"], "--find-ground is for --value height and canopy"),
         (["--value", "count", "--above", "LIDAR"], "--above is for --value height"),
         (["--above-classes", "5"], "--above-classes is for --value height"),
         (["--value", "height", "--classes", "2", "--above-classes", "300"], "from 0 to 255"),

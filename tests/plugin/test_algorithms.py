@@ -140,6 +140,8 @@ def test_products_are_those_of_the_package(tmp_path, survey):
         "raster": job("raster", INPUT="ground", SPACING=2, OUTPUT=tmp_path / "raster.tif"),
         "light": job("raster", INPUT="ground", LIKE="dem", VALUE="hillshade",
                      OUTPUT=tmp_path / "light.tif"),
+        "operator": job("raster", INPUT="ground", LIKE="dem", VALUE="tri", OPERATOR="wilson",
+                        COMPUTE_EDGES=True, OUTPUT=tmp_path / "tri.tif"),
     }  # fmt: skip
     told = drive(tmp_path, layers, jobs)
     require_done(told)
@@ -234,6 +236,10 @@ def check_rasters(told, tin, folder):
     with rasterio.open(folder / "raster.tif") as one, rasterio.open(folder / "wanted.tif") as other:
         np.testing.assert_array_equal(one.read(), other.read())
         assert str(one.profile) == str(other.profile)  # NaN is not NaN; tags tell of the inputs
+    with rasterio.open(folder / "tri.tif") as one:
+        options = {"value": "tri", "operator": "wilson", "compute_edges": True}
+        wanted = ts.rasterize(tin, like=one, **options).bands["tri"]
+        np.testing.assert_array_equal(one.read(1), wanted)
     layer = told["raster"]["layers"]["Raster"]
     assert (layer["renderer"], layer["crs"]) == ("singlebandpseudocolor", UTM)
     assert told["light"]["layers"]["Raster"]["renderer"] == "singlebandgray"

@@ -51,6 +51,7 @@ RESULTS = {
     "preview": ts.preview,
     "profile": lambda tin: ts.profile({"ground": tin}, LINE),
     "rasterize": lambda tin: ts.rasterize(tin, spacing=5.0),
+    "rasterize_canopy": lambda tin: ts.rasterize_canopy(tin, HILL.points, spacing=5.0),
     "rasterize_heights": lambda tin: ts.rasterize_heights(tin, HILL.points, spacing=5.0),
     "ridges_and_valleys": ts.ridges_and_valleys,
     "section_lines": lambda tin: ts.section_lines(tin, LINE, interval=20.0, width=20.0),

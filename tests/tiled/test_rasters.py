@@ -346,3 +346,28 @@ def test_counts_of_all_files_are_told_as_of_one_survey(tmp_path):
     nothing = ts.tiles(folder, where={"classification": 12})
     with pytest.raises(ts.ReadError, match=r"no points in the inputs.*9 water \(400\); taken: 12"):
         nothing.rasterize(tmp_path / "nothing.tif", spacing=2.0, workers=1)
+
+
+@pytest.mark.parametrize("edges", [False, True])
+@pytest.mark.parametrize("tiles", [1, 7])
+@pytest.mark.parametrize(("value", "operator"), [("slope", "horn"), ("plan-curvature", None)])
+def test_cells_and_their_neighbors_are_those_in_memory(
+    lidar, tmp_path, value, operator, tiles, edges
+):
+    path = tmp_path / "a.tif"
+    options = {"spacing": 1.0, "value": value, "operator": operator, "compute_edges": edges}
+    with ThreadPoolExecutor(2) as threads:
+        ts.tiles(lidar, classes=2).rasterize(path, tiles=tiles, executor=threads, **options)
+    wanted = ts.rasterize(ts.triangulate(ts.read(lidar, classes=2)), **options)
+    with rasterio.open(path) as dataset:
+        np.testing.assert_array_equal(dataset.read(1), wanted.bands[value])
+        assert wanted.notes[-1] in str(dataset.tags())
+
+
+def test_neighbors_that_no_cell_has_are_refused_in_tiles(lidar, tmp_path):
+    cloud = ts.tiles(lidar, classes=2)
+    side = ts.read(lidar, classes=2).bounds.width
+    with pytest.raises(ts.PointsError, match="No cell has a value of tpi"):
+        cloud.rasterize(tmp_path / "a.tif", spacing=side, value="tpi")
+    with pytest.raises(ts.OptionError, match="riley or wilson for tri"):
+        cloud.rasterize(tmp_path / "a.tif", spacing=1.0, value="tri", operator="horn")

@@ -7,7 +7,7 @@ from typing import Any
 from qgis.core import QgsProcessingParameterRasterDestination, QgsProcessingParameterRasterLayer
 
 from ..inputs import Surface, find_raster
-from ..options import choice, describe, number
+from ..options import choice, describe, number, switch
 from ..styles import style_hillshade, style_raster
 from .base import CommandAlgorithm, Run
 
@@ -17,7 +17,7 @@ class RasterAlgorithm(CommandAlgorithm):
 
     verb = "raster"
     title = "Raster of a TIN"
-    summary = "Turns a TIN into a raster of elevation, slope, aspect or hillshade."
+    summary = "Turns a TIN into a raster of elevation, slope, aspect, hillshade or curvature."
     explanation = (
         "Give the side of a cell, or a raster whose cells are taken. Cells outside the surface "
         "have no data. The raster may be larger than memory."
@@ -29,9 +29,49 @@ class RasterAlgorithm(CommandAlgorithm):
             "VALUE",
             "What the cells hold",
             "--value",
-            "Slope and aspect in degrees, hillshade from 1 to 255. Of points also their count in a "
-            "cell, and how high the highest is above the ground, whose classes are chosen.",
-            ("elevation", "slope", "aspect", "hillshade", "count", "height"),
+            "Slope and aspect in degrees, hillshade from 1 to 255. Of each cell and its neighbours "
+            "curvatures, ruggedness (tri), topographic position (tpi) and roughness. Of points "
+            "also their count in a cell, how high the highest is above the ground, and (canopy) "
+            "three bands: the surface of the highest, the ground, and the height between.",
+            (
+                "elevation",
+                "slope",
+                "aspect",
+                "hillshade",
+                "profile-curvature",
+                "plan-curvature",
+                "tangential-curvature",
+                "mean-curvature",
+                "gaussian-curvature",
+                "tri",
+                "tpi",
+                "roughness",
+                "count",
+                "height",
+                "canopy",
+            ),
+        ),
+        choice(
+            "OPERATOR",
+            "Computed of neighbouring cells",
+            "--operator",
+            "Slope, aspect and hillshade by Horn or Zevenbergen and Thorne, as gdaldem has them, "
+            "in place of those of the surface; ruggedness by Riley or Wilson.",
+            ("as usual", "horn", "zevenbergen-thorne", "riley", "wilson"),
+            advanced=True,
+        ),
+        switch(
+            "FIND_GROUND",
+            "Find the ground among the points",
+            "--find-ground",
+            "For height and canopy, where no class of the points is chosen.",
+        ),
+        switch(
+            "COMPUTE_EDGES",
+            "Compute edges",
+            "--compute-edges",
+            "Values of cells and their neighbours also at the rim and beside cells without data.",
+            advanced=True,
         ),
         choice(
             "METHOD",

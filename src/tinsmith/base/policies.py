@@ -87,14 +87,32 @@ InterpolationMethod: TypeAlias = Literal["linear", "nearest", "laplace", "natura
 Extrapolation: TypeAlias = Literal["nearest"]
 """What is taken for the elevation outside a surface."""
 
-RasterValue: TypeAlias = Literal["elevation", "slope", "aspect", "hillshade"]
+PlaneValue: TypeAlias = Literal["slope", "aspect", "hillshade"]
+"""What is measured of a plane."""
+
+NeighborhoodValue: TypeAlias = Literal[
+    "profile-curvature",
+    "plan-curvature",
+    "tangential-curvature",
+    "mean-curvature",
+    "gaussian-curvature",
+    "tri",
+    "tpi",
+    "roughness",
+]
+"""What is measured of a cell and its eight neighbours, and of no triangle."""
+
+RasterValue: TypeAlias = Literal["elevation", PlaneValue, NeighborhoodValue]
 """What the cells of a raster hold."""
+
+GridOperator: TypeAlias = Literal["horn", "zevenbergen-thorne", "riley", "wilson"]
+"""How a value is computed from a cell and its eight neighbours."""
 
 PointRasterValue: TypeAlias = Literal["count", "height"]
 """What the cells of a raster hold of points."""
 
-CellValue: TypeAlias = Literal[RasterValue, PointRasterValue]
-"""Either of them."""
+CellValue: TypeAlias = Literal[RasterValue, PointRasterValue, "canopy"]
+"""Either of them, or the surfaces above and below the canopy with its height."""
 
 RasterSample: TypeAlias = Literal["center", "mean"]
 """Whether a cell holds the value at its centre, or the mean over it."""

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from ..base.sentences import counted
 from .parameters import parsed, under
 from .paths import INPUT
 from .tiling import take_points
@@ -21,7 +22,15 @@ if TYPE_CHECKING:
 _NOISE = (7, 18)
 """Classes of low and of high noise."""
 _ALL_BUT_NOISE = [number for number in range(256) if number not in _NOISE]
-_OF_SURFACES = {"method": "linear", "at": "center", "azimuth": 315.0, "altitude": 45.0}
+_HEIGHTS = ("height", "canopy")
+_OF_SURFACES = {
+    "method": "linear",
+    "at": "center",
+    "azimuth": 315.0,
+    "altitude": 45.0,
+    "operator": None,
+    "compute_edges": False,
+}
 
 
 @parsed
@@ -43,7 +52,8 @@ def point_options(command: Any) -> Any:
             "--above",
             type=INPUT,
             metavar="FILE",
-            help="Points above the surface of --value height, or a folder of them; default FILE.",
+            help="Points above the surface of --value height or canopy, or a folder of them; "
+            "default FILE.",
         ),
         click.option(
             "--above-classes",
@@ -51,6 +61,12 @@ def point_options(command: Any) -> Any:
             callback=_parse_classes,
             help="Classes of points that are taken above the surface; default all but noise, 7 and "
             "18.",
+        ),
+        click.option(
+            "--find-ground",
+            is_flag=True,
+            help="Find the ground among the points of FILE, as 'tinsmith ground' does by default, "
+            "in place of --classes.",
         ),
     )
     for option in reversed(options):
@@ -67,24 +83,37 @@ class PointChoice:
     value: str
     above: Path
     above_classes: list[int] | None
+    finds_ground: bool
 
     @classmethod
     def take(cls, file: Path, job: Job, asked: dict[str, Any]) -> PointChoice:
         """Take the options of points from all that were given; those of none are wrong usage."""
         above, classes, value = asked.pop("above"), asked.pop("above_classes"), asked["value"]
-        if value not in ("count", "height"):
+        finds_ground = asked.pop("find_ground")
+        if value not in ("count", *_HEIGHTS):
             value = ""
-        if value != "height" and (above is not None or classes is not None):
-            flag = "--above" if above is not None else "--above-classes"
-            raise click.UsageError(f"{flag} is for --value height.")
+        given = {
+            "--above": above,
+            "--above-classes": classes,
+            "--find-ground": finds_ground or None,
+        }
+        flag = next((flag for flag, one in given.items() if one is not None), None)
+        if value not in _HEIGHTS and flag is not None:
+            raise click.UsageError(f"{flag} is for --value height and canopy.")
         if value:
             _require_points(job, asked, value)
-        if value == "height" and above is None and "classes" not in job.reading.options:
+        has_classes = "classes" in job.reading.options
+        if finds_ground and has_classes:
             raise click.UsageError(
-                "--value height needs to know the ground: choose it by --classes 2, or name the "
-                "points above the surface of FILE by --above."
+                "--find-ground finds the ground among all points of FILE, and --classes chooses it "
+                "by its class: give one of them."
             )
-        return cls(file, job, value, above or file, classes)
+        if value in _HEIGHTS and above is None and not has_classes and not finds_ground:
+            raise click.UsageError(
+                f"--value {value} needs to know the ground: choose it by --classes 2, find it by "
+                "--find-ground, or name the points above the surface of FILE by --above."
+            )
+        return cls(file, job, value, above or file, classes, finds_ground)
 
     def __bool__(self) -> bool:
         return bool(self.value)
@@ -97,7 +126,14 @@ class PointChoice:
     @property
     def others(self) -> list[Path]:
         """Files of the points above a surface."""
-        return [self.above] if self.value == "height" else []
+        return [self.above] if self.value in _HEIGHTS else []
+
+    @property
+    def whole(self) -> str:
+        """What needs all points at a time, if anything."""
+        if self.finds_ground:
+            return "--find-ground"
+        return "--value canopy" if self.value == "canopy" else ""
 
     def in_tiles(self) -> dict[str, Any]:
         """Return the options of tiles: the points above the surface."""
@@ -113,19 +149,32 @@ class PointChoice:
 
     def compute(self, asked: dict[str, Any]) -> tuple[Raster, TIN | None, int]:
         """Compute the raster in memory; return it, the surface, and how many points it is of."""
-        from ..terrain import rasterize_counts, rasterize_heights
+        from ..terrain import rasterize_canopy, rasterize_counts, rasterize_heights
 
         cells = {name: asked[name] for name in ("spacing", "like")}
         if self.value == "count":
             survey = self.job.read_survey(self.file, need=", and points are counted.")
             return rasterize_counts(survey, **cells), None, len(survey)
-        tin = self.job.read_tin(self.file)
+        tin = self._find_ground() if self.finds_ground else self.job.read_tin(self.file)
         job = self._choose({}).with_fallback(classes=self._classes)
         survey = job.read_survey(self.above, need=", and heights are those of points.")
         if "classification" not in survey.attributes:
             self._refuse_classes()
-        threads = self.job.building.threads
-        return rasterize_heights(tin, survey, **cells, threads=threads), tin, len(survey)
+        make = rasterize_canopy if self.value == "canopy" else rasterize_heights
+        return make(tin, survey, **cells, threads=self.job.building.threads), tin, len(survey)
+
+    def _find_ground(self) -> TIN:
+        """Return the TIN of the ground that is found among the points of the file."""
+        from ..terrain import ground
+
+        job = self.job.with_fallback(attributes="all")
+        need = ", and the ground is found among points."
+        survey = job.add_lines(job.read_survey(self.file, need=need))
+        with job.step(f"Finding the ground among {counted(len(survey), 'point')}") as progress:
+            found = ground(survey, progress=progress)
+        tin = job.build_tin(found.survey)
+        job.note_surfaces(tin)
+        return tin
 
     @property
     def _classes(self) -> list[int]:
@@ -147,6 +196,8 @@ def _require_points(job: Job, asked: dict[str, Any], value: str) -> None:
     smooth = asked.pop("smooth")
     given = [name for name, usual in _OF_SURFACES.items() if asked.pop(name) != usual]
     given += [] if smooth is None else ["smooth"]
-    flags = [f"--{name}" for name in given] + (job.building.shaping if value == "count" else [])
+    flags = [f"--{name.replace('_', '-')}" for name in given] + (
+        job.building.shaping if value == "count" else []
+    )
     if flags:
         raise click.UsageError(f"{flags[0]} is of surfaces, and not for --value {value}.")

@@ -17,6 +17,7 @@ from ..base.errors import OptionError, choice
 from ..base.policies import (
     CrossingPolicy,
     DuplicatePolicy,
+    GridOperator,
     GroundReturns,
     OutsidePolicy,
     RasterSample,
@@ -459,6 +460,8 @@ class TiledPoints:
         azimuth: float = 315.0,
         altitude: float = 45.0,
         smooth: bool | None = None,
+        operator: GridOperator | None = None,
+        compute_edges: bool = False,
         at: RasterSample = "center",
         **way: Unpack[Way],
     ) -> Path:
@@ -471,7 +474,7 @@ class TiledPoints:
             Name of a format, to choose it whatever the suffix.
         write : mapping, optional
             Options of the writer.
-        spacing, like, value, azimuth, altitude, smooth, at
+        spacing, like, value, azimuth, altitude, smooth, operator, compute_edges, at
             As of :func:`tinsmith.rasterize`.
         **way
             How the run is carried out, see :class:`Way`.
@@ -500,7 +503,8 @@ class TiledPoints:
         'dtm.tif'
         """
         light = {"azimuth": azimuth, "altitude": altitude, "smooth": smooth, "at": at}
-        asked = {"spacing": spacing, "like": like, "value": value, "bounds": self.bounds, **light}
+        cells = {"operator": operator, "compute_edges": compute_edges, "bounds": self.bounds}
+        asked = {"spacing": spacing, "like": like, "value": value, **cells, **light}
         return self._write("raster", asked, path, (format, write), way)
 
     def rasterize_counts(

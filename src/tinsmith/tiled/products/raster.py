@@ -11,13 +11,17 @@ from ...base.checks import as_flag
 from ...base.crs import CRS, Unit
 from ...base.errors import OptionError, PointsError, choice
 from ...base.georeference import describe_unknown
-from ...base.policies import RasterSample, RasterValue
+from ...base.policies import GridOperator, RasterSample, RasterValue
 from ...base.results import Raster
 from ...terrain.gridding import (
     DESCRIBED_MEANS,
+    GridMeasure,
     describe_extent,
+    describe_no_value,
     describe_smooth,
     list_units,
+    make_measure,
+    require_sample,
 )
 from ...terrain.parts import (
     RasterOptions,
@@ -50,6 +54,8 @@ def check_options(
     azimuth: float = 315.0,
     altitude: float = 45.0,
     smooth: bool | None = None,
+    operator: GridOperator | None = None,
+    compute_edges: bool = False,
     bounds: Bounds | None = None,
 ) -> dict[str, Any]:
     """Return plain options, or refuse what is none, or needs all points at a time.
@@ -61,21 +67,20 @@ def check_options(
     if method != "linear":
         raise OptionError("method", method, "linear where a raster is computed in tiles")
     choice("at", at, RasterSample)
-    if at == "mean" and value == "aspect":
-        raise OptionError("at", at, "center for aspect, as directions have no mean")
+    of_cells = make_measure(value, operator, compute_edges, light=as_light(azimuth, altitude))
+    require_sample(method, value, at, smooth, of_cells)
     if smooth is not None:
         as_flag("smooth", smooth)
-    if smooth is not None and value == "elevation":
-        raise OptionError("smooth", smooth, "None for elevations, which have a method")
     if smooth and at == "mean":
         raise OptionError("smooth", smooth, "False for means, which are those of triangles")
-    as_light(azimuth, altitude)
     return {
         **cells,
         "value": value,
         "azimuth": azimuth,
         "altitude": altitude,
         "smooth": smooth,
+        "operator": operator,
+        "compute_edges": compute_edges,
         "at": at,
     }
 
@@ -91,11 +96,23 @@ def settle_options(points: StoredPoints, options: Mapping[str, Any]) -> dict[str
     }
 
 
+def _make_measure(options: Mapping[str, Any]) -> GridMeasure | None:
+    return make_measure(
+        options["value"],
+        options["operator"],
+        options["compute_edges"],
+        light=as_light(options["azimuth"], options["altitude"]),
+        crs=CRS.of(options["crs"]),
+        elevation_unit=Unit.of(options["elevation_unit"]),
+    )
+
+
 def _make_options(options: Mapping[str, Any]) -> RasterOptions:
     return RasterOptions(
         grid=make_grid(options["grid"]),
         value=options["value"],
         is_smooth=options["smooth"],
+        of_cells=_make_measure(options),
         at=options["at"],
         light=as_light(options["azimuth"], options["altitude"]),
         crs=CRS.of(options["crs"]),
@@ -131,7 +148,10 @@ def join(
     """
     grid, value = _make_options(options).grid, options["value"]
     what = "part of a cell" if options["at"] == "mean" else "centre of a cell"
+    of_cells = _make_measure(options)
     if not any(record.values.get("covered") for record in records.values()):
+        if of_cells is not None:
+            raise PointsError(describe_no_value(of_cells, grid))
         raise PointsError(
             f"No {what} lies on the surface: the cells are {grid.spacing:g} wide and "
             f"cover {describe_extent(grid.bounds)}, the points {describe_extent(points.bounds)}."
@@ -142,18 +162,20 @@ def join(
         {value: blocks},
         grid,
         crs=crs if crs is None or is_elevation else crs.horizontal,
-        units=list_units(value, points.elevation_unit),
+        units=list_units(value, crs, points.elevation_unit),
         name=value,
         notes=[
             *points.notes,
             *describe_unknown(crs, points.elevation_unit),
             *options["notes"],
-            *([] if is_elevation else [_describe_slopes(options)]),
+            *([] if is_elevation else [_describe_slopes(options, of_cells)]),
         ],
     )
 
 
-def _describe_slopes(options: Mapping[str, Any]) -> str:
+def _describe_slopes(options: Mapping[str, Any], of_cells: GridMeasure | None) -> str:
+    if of_cells is not None:
+        return of_cells.describe()
     if options["at"] == "mean":
         return DESCRIBED_MEANS
     return describe_smooth(is_smooth=options["smooth"])

@@ -33,13 +33,20 @@ _RASTERIZE = "terrain.gridding.rasters.rasterize"
     "--value",
     CellValue,
     "Value of the cells: of the surface elevation, slope and aspect in degrees, hillshade from 1 "
-    "to 255; of points their count, or the height of the highest above the surface.",
+    "to 255; of each cell and its neighbours curvatures, ruggedness (tri), topographic position "
+    "(tpi), roughness; of points their count, the height of the highest above the surface, or "
+    "(canopy) a DSM of the highest, the DTM below and the height between them, as three bands.",
     default="elevation",
 )
 @product_options(
     _RASTERIZE,
-    "method at azimuth altitude smooth",
+    "method at azimuth altitude smooth operator compute_edges",
     method="Interpolation between the vertices.",
+    operator="Compute slope, aspect or hillshade of the elevations of each cell and its eight "
+    "neighbours, as gdaldem does, by Horn or Zevenbergen and Thorne; ruggedness by Riley (default) "
+    "or Wilson.",
+    compute_edges="Values of cells and their neighbours also where neighbours have no elevation, "
+    "and at the rim of the raster, as gdaldem's -compute_edges.",
 )
 @point_options
 @tiled_options()
@@ -47,12 +54,13 @@ def raster(file: Path, spacing: float | None, like: Path | None, job: Job, **ask
     """Rasterize the TIN in FILE, or built from the points in it.
 
     FILE may be a folder of tiles. Cells outside the surface have no data. Points and raster may be
-    larger than memory. For --value height the surface is that of --classes, and all points of FILE
-    but noise are above it, or those of --above.
+    larger than memory. For --value height and canopy the surface is that of --classes or
+    --find-ground, and all points of FILE but noise are above it, or those of --above.
 
     Example:
       tinsmith raster sample_data/site_survey.csv --crs EPSG:32616 --codes
         --spacing 0.5 -o site.tif
+      tinsmith raster cloud.laz --find-ground --value canopy --spacing 1 -o canopy.tif
     """
     from ....io.raster import read_cells
     from ...output import describe_raster_size
@@ -63,7 +71,7 @@ def raster(file: Path, spacing: float | None, like: Path | None, job: Job, **ask
     more = [] if like is None else [Named(like, "the raster of --like")]
     planned = job.plan(job.list_inputs(*chosen.files, more=more), "Raster")
     asked |= {"spacing": spacing, "like": None if like is None else read_cells(like)}
-    cloud = choose_tiles(job, file, others=chosen.others)
+    cloud = choose_tiles(job, file, whole=chosen.whole, others=chosen.others)
     facts = Facts(file)
     if cloud is not None:
         asked |= chosen.in_tiles()
