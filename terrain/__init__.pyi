@@ -26,6 +26,8 @@ from .earthwork.grading import balance as balance
 from .earthwork.grading import grade as grade
 from .earthwork.grading import merge as merge
 from .earthwork.grading import paste as paste
+from .gridding import Coregistration as Coregistration
+from .gridding import coregister as coregister
 from .gridding import height_above as height_above
 from .gridding import rasterize as rasterize
 from .gridding import rasterize_canopy as rasterize_canopy

@@ -120,6 +120,11 @@ def write_files():
     ts.write(make_rings((-40, -30, 3)), "shafts.gpkg")
     ts.write(make_rings((40, 30, 4)), "cars.shp")
     ts.write(make_rings((-40, 30, 5)), "ponds.gpkg")
+    hills = np.concatenate([np.zeros(2), [3.0]]) * np.ones((len(survey.points), 1))
+    hills[:, 2] *= np.sin(survey.points[:, 0] / 9) + np.cos(survey.points[:, 1] / 7)
+    for name, move in (("old", 0.0), ("new", np.array([0.5, -0.25, 0.1]))):
+        ts.write(ts.triangulate(survey.points + hills + move, crs=CRS), f"{name}.gpkg")
+    shutil.copy("parcels.geojson", "slides.geojson")
     write_others(ground)
     make_lidar(Path())
     shutil.copytree(ROOT / "tests" / "data" / "meshes" / "esri_tin_holes", "old_tin")

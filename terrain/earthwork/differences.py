@@ -35,6 +35,12 @@ if TYPE_CHECKING:
 
 _SHARES = {"p05": 5.0, "p25": 25.0, "median": 50.0, "p75": 75.0, "p95": 95.0}
 
+_NMAD = 1.4826
+"""What makes the median of absolute deviations a standard deviation of normal ones."""
+
+_FINEST_SHARE = 1e-12
+"""Of the largest deviation: the median of all is found as precisely."""
+
 _FAN_OUT = 32
 """Elevations compared with the share wanted at a time."""
 
@@ -147,10 +153,14 @@ class Difference:
         """Mean, root mean square and others of the difference, weighted by area: one row.
 
         ``mean``, ``rms``, ``standard_deviation``, ``mean_absolute``, ``lowest``, ``highest``,
-        percentiles ``p05``, ``p25``, ``median``, ``p75``, ``p95``, and the ``area``.
+        percentiles ``p05``, ``p25``, ``median``, ``p75``, ``p95``, ``nmad`` (1.4826 times the
+        median of the absolute deviations from the median, a standard deviation that outliers leave
+        as it is; Höhle and Höhle 2009, doi:10.1016/j.isprsjprs.2009.02.003), and the ``area``.
         """
         columns = _list_moments(self._sums)
         columns |= dict(zip(_SHARES, self.percentiles(list(_SHARES.values())), strict=True))
+        surface = Surface(self.tin.points, self.tin.triangles)
+        columns["nmad"] = _NMAD * find_median_deviation(surface, float(columns["median"]))
         units: dict[str, Any] = dict.fromkeys(columns, self._reference.elevation_unit)
         units["area"] = self._reference.units.area
         return Table(
@@ -368,3 +378,29 @@ def _solve_between(surface: Surface, low: float, high: float, area: float) -> fl
     rest = area - at_low
     t = 2.0 * rest / (b + np.sqrt(max(b * b + 4.0 * c * rest, 0.0)))
     return float(low + min(max(t, 0.0), 1.0) * (high - low))
+
+
+def find_median_deviation(surface: Surface, middle: float) -> float:
+    """Return the absolute deviation from an elevation that half of the area does not exceed."""
+    values = surface.points[surface.triangles.ravel(), 2]
+    half = 0.5 * float(_measure_below(surface, np.array([np.inf]))[0])
+    low, high = 0.0, float(np.abs(values - middle).max())
+    if high == 0.0 or _measure_within(surface, middle, np.zeros(1))[0] >= half:
+        return 0.0
+    least = _FINEST_SHARE * high
+    while high - low > least:
+        trial = np.linspace(low, high, _FAN_OUT + 2)
+        reached = np.flatnonzero(_measure_within(surface, middle, trial[1:-1]) >= half)
+        first = int(reached[0]) + 1 if len(reached) else _FAN_OUT + 1
+        if (trial[first - 1], trial[first]) == (low, high):
+            break
+        low, high = float(trial[first - 1]), float(trial[first])
+    return high
+
+
+def _measure_within(surface: Surface, middle: float, away: Float64Array) -> Float64Array:
+    """Return the areas that are no further away from an elevation."""
+    ends = np.concatenate([np.nextafter(middle + away, np.inf), middle - away])
+    levels, at = np.unique(ends, return_inverse=True)
+    below = _measure_below(surface, levels)[at]
+    return below[: len(away)] - below[len(away) :]

@@ -1,6 +1,8 @@
 # Names that other packages use, each with the module that has it.
 from .bands import SurfaceBand as SurfaceBand
 from .canopies import rasterize_canopy as rasterize_canopy
+from .coregistration import Coregistration as Coregistration
+from .coregistration import coregister as coregister
 from .grids import Cells as Cells
 from .grids import as_cells as as_cells
 from .grids import as_parts as as_parts

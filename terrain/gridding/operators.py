@@ -51,7 +51,15 @@ OPERATORS: dict[RasterValue, tuple[GridOperator, ...]] = {
 """The operators of each value that has any; the first is usual, but of values of planes, which the
 surface has without one."""
 
+_LARGEST = 1e150
+"""Of elevations: squares of the differences of larger ones overflow."""
+
 _OF_PLANES = ("slope", "aspect", "hillshade")
+
+_OVERFLOW = (
+    "Elevations are too large, or cells too small, for what is computed of cells and their "
+    "neighbours in double precision: it overflows."
+)
 
 _SOURCES = {
     "horn": "Horn's operator (1981)",
@@ -178,16 +186,21 @@ class OperatorBand:
 
     def _compute(self, rows: slice, columns: slice) -> Float64Array:
         z, is_known = self._list_neighbors(rows, columns)
+        if np.nanmax(np.abs(z[4]), initial=0.0) > _LARGEST:
+            raise PointsError(_OVERFLOW)
         measure = self._measure
         y = locate_centers(self._grid, rows, columns)[1]
         scales = find_scales(measure.crs, measure.elevation_unit, y)
         steps = [np.reshape(side * self._grid.spacing, (-1, 1)) for side in scales[:2]]
-        if measure.value in _OF_PLANES:
-            found = _measure_planes(z, (steps[0], steps[1]), scales.up, measure)
-        elif measure.value in _CURVATURES:
-            found = _measure_curvature(z, (steps[0], steps[1]), scales.up, measure)
-        else:
-            found = _RUGGEDNESS[measure.value, measure.operator](z)
+        with np.errstate(over="ignore", invalid="ignore"):  # refused below
+            if measure.value in _OF_PLANES:
+                found = _measure_planes(z, (steps[0], steps[1]), scales.up, measure)
+            elif measure.value in _CURVATURES:
+                found = _measure_curvature(z, (steps[0], steps[1]), scales.up, measure)
+            else:
+                found = _RUGGEDNESS[measure.value, measure.operator](z)
+        if np.isinf(found).any():
+            raise PointsError(_OVERFLOW)
         found[~is_known] = np.nan
         return found
 
@@ -254,6 +267,8 @@ def _measure_planes(
     normals = np.ones((*z[4].shape, 3))
     for axis, (side, step) in enumerate(zip(gradient, steps, strict=True)):
         normals[..., axis] = -(side * up) / step
+    if np.isinf(normals).any():
+        raise PointsError(_OVERFLOW)
     axes = find_axes(measure.crs)
     upward = normals.reshape(-1, 3)
     value: Any = measure.value

@@ -155,6 +155,33 @@ def add(pairs):
     return tuple(map(float, np.sum(pairs, axis=0)))
 
 
+def compare_shift(folder, figures):
+    """Compare statistics and counts of a surface that was moved by half a cell."""
+    points = ts.read(folder / "hill.csv", crs=CRS).points
+    points = points + np.column_stack([0 * points[:, :2], 3 * np.sin(points[:, 1] / 9)])
+    for name, move in (("wavy", 0.0), ("moved", np.array([2.5, 1.0, 0.5]))):
+        rows = [f"{x},{y},{z}" for x, y, z in (points + move).tolist()]
+        (folder / f"{name}.csv").write_text("\n".join(["easting,northing,elevation", *rows]))
+    outputs = ("-o", "k.csv", "-o", "k.ply")
+    run = Run("coregister", "wavy.csv", *outputs, file="moved.csv", figures=figures)
+    tin = ts.read(folder / "k.ply")
+    sizes = {"vertices": [len(tin.points)], "triangles": [len(tin.triangles)]}
+    table = read_table(folder / "k.csv")
+    said = {name: [float(row[name]) for row in table] for name in ("nmad", "median", "rms")}
+    cells = {"cells": [float(table[1]["cells"])]}
+    told = {name: run.numbers({"nmad": "NMAD", "rms": "RMS"}.get(name, "Median")) for name in said}
+    rows = run.record["statistics"]
+    counts = dict(zip(sizes, ([one] for one in run.numbers("Shifted")), strict=False))
+    return {
+        "file": sizes,
+        "table": said | cells | sizes,
+        "record": {name: [row[name] for row in rows] for name in said}
+        | {name: [run.record["tin"][name]] for name in sizes}
+        | {"cells": [rows[1]["cells"]], "shift": run.record["shift"]},
+        "summary": told | counts | {"cells": run.numbers("Cells"), "shift": run.numbers("Shift")},
+    }
+
+
 def compare_difference(folder, figures):
     outputs = [word for name in ("d.ply", "d.csv", "d.gpkg", "d.png") for word in ("-o", name)]
     run = Run("diff", "flat.csv", *outputs, figures=figures)
@@ -549,6 +576,9 @@ AGREEMENTS = {
     "compare": [compare_algorithms],
     "contours": [compare_contours],
     "convert": [compare_converted],
+    "coregister": [
+        compare_shift,
+    ],
     "corridor": [compare_meshes("corridor", "k.ply", "Corridor", "road.geojson", "template.csv")],
     "diff": [compare_difference],
     "drape": [compare_draped],

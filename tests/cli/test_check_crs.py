@@ -30,6 +30,7 @@ COMMANDS = {
     "corridor": "corridor TIN ROAD TEMPLATE -o OUT.ply",
     "paste": "paste TIN PATCH -o OUT.ply",
     "merge": "merge PATCH TIN -o OUT.ply",
+    "coregister": "coregister TIN TIN2 --spacing 2 -o OUT.ply",
     "clip": "clip TIN --by PAD -o OUT.ply",
     "ground": "ground POINTS -o OUT.las",
     "edit": "edit TIN EDITS -o OUT.ply",

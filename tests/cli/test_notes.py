@@ -20,6 +20,7 @@ COMMANDS = {
     "compare": ["--sample", 50],
     "contours": ["--interval", 1, "-o", "out.gpkg"],
     "convert": ["-o", "out.xyz"],
+    "coregister": ["clean.csv", "-o", "out.ply"],
     "corridor": ["road.geojson", "template.csv", "-o", "out.ply"],
     "diff": ["flat.csv", "-o", "out.ply"],
     "drape": ["ring.geojson", "-o", "out.gpkg"],
@@ -64,6 +65,7 @@ def write_hill(folder):
         x, y = divmod(i, 20)
         z = 0.0 if i == 213 else 320 + 0.05 * x * (20 - x) + 0.1 * y
         rows.append(f"{1000 + i},{700_000 + 5 * x},{4_000_000 + 5 * y},{z:.3f}")
+    (folder / "clean.csv").write_text("\n".join(rows))
     path = folder / "hill.csv"
     path.write_text("\n".join([*rows, "1400,700003,4000003,320..5"]))
     return path
@@ -139,4 +141,4 @@ def test_what_a_build_found_is_told_of_its_file(command, folder, built):
 
 def take_crs(command):
     """Return the reference of a second file, where there is one."""
-    return CRS[:4] if "flat.csv" in COMMANDS[command] else []
+    return CRS[:4] if {"flat.csv", "clean.csv"} & {*COMMANDS[command]} else []

@@ -33,6 +33,7 @@ OF_OTHER_KINDS = {
     "SectionSheets": "a drawing",
     "VolumeReport": "a document",
     "Preview": "a page",
+    "Coregistration": "has a surface and a table",
     "Difference": "has parts of all kinds",
     "BalancedPad": "has a surface and a table",
 }
@@ -138,6 +139,7 @@ COMMANDS = {
     "paste": ("paste SITE PATCH", "TIN"),
     "merge": ("merge PATCH SITE --blend 2", "TIN"),
     "clip": ("clip SITE --by RING", "TIN"),
+    "coregister": ("coregister SITE SITE", "TIN Table"),
     "convert": ("convert SITE", "TIN"),
 }
 OTHERS = {

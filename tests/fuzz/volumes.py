@@ -94,6 +94,8 @@ def examine_difference(tin: Any, other: Any, table: Any) -> str:
         )
     middle = found.statistics["median"][0]
     assert found.statistics["lowest"][0] <= middle <= found.statistics["highest"][0]
+    reach = max(abs(found.statistics[name][0] - middle) for name in ("lowest", "highest"))
+    assert 0 <= found.statistics["nmad"][0] <= 1.4826 * reach + 1e-12 * relief, "NMAD"
     return "overlaid"
 
 

@@ -74,6 +74,8 @@ def test_results_are_those_of_the_package(tmp_path):
         "merged": qgis.job("merge", FIRST="patch", SECOND="ground", BLEND=2.5,
                            OUTPUT=tmp_path / "merged.ply"),
         "clipped": qgis.job("clip", INPUT="ground", POLYGONS="pad", OUTPUT=tmp_path / "part.ply"),
+        "shifted": qgis.job("coregister", SHIFTED="ground", REFERENCE="ground", UNSTABLE="pad",
+                            OUTPUT=tmp_path / "shifted.ply"),
         "suspects": qgis.job("inspect", INPUT="cloud", OUTPUT=tmp_path / "suspects.gpkg"),
         "alone": qgis.job("paste", BASE="ground", OUTPUT=tmp_path / "no.ply"),
         "outside": qgis.job("sight", INPUT="ground", EYE=f"0,0 [{qgis.UTM}]",
@@ -162,6 +164,9 @@ def check_earthwork(told, tin, folder):
     assert any("Along the seam" in text for text in said)
     merged = ts.merge([ts.triangulate(PATCH, crs=qgis.UTM), tin], blend=2.5)
     qgis.assert_same_tin(ts.read(folder / "merged.ply"), merged)
+    shifted = ts.coregister(tin, tin, unstable=[PAD]).tin
+    qgis.assert_same_tin(ts.read(folder / "shifted.ply"), shifted)
+    assert told["shifted"]["layers"]["Shifted TIN"]["faces"] == len(shifted.triangles)
     clipped = ts.clip(tin, [PAD])
     qgis.assert_same_tin(ts.read(folder / "part.ply"), clipped)
     assert told["clipped"]["layers"]["Clipped TIN"]["faces"] == len(clipped.triangles)

@@ -68,6 +68,7 @@ RESULTS = {
     "volume_report": lambda tin: ts.volume_report(tin, base=318.0),
     "volume": lambda tin: ts.volume(tin, base=318.0),
     "balance": lambda tin: ts.balance(tin, CORNER, cut_slope=2.0, fill_slope=2.0),
+    "coregister": lambda tin: ts.coregister(tin, ts.triangulate(HILL.points, crs=HILL.crs)),
     # surfaces
     "merge": lambda tin: ts.merge([ts.triangulate(add_height(RING, 330), crs=HILL.crs), tin]),
     "corridor": lambda tin: ts.corridor(tin, AXIS, ROAD),

@@ -11,7 +11,7 @@ from .grade import CorridorAlgorithm, GradeAlgorithm
 from .ground import GroundAlgorithm
 from .inspect import InspectAlgorithm
 from .install import InstallAlgorithm
-from .paste import ClipAlgorithm, MergeAlgorithm, PasteAlgorithm
+from .paste import ClipAlgorithm, CoregisterAlgorithm, MergeAlgorithm, PasteAlgorithm
 from .profile import ProfileAlgorithm
 from .raster import RasterAlgorithm
 from .refine import RefineAlgorithm
@@ -41,6 +41,7 @@ ALGORITHMS = (
     PasteAlgorithm,
     MergeAlgorithm,
     ClipAlgorithm,
+    CoregisterAlgorithm,
     RasterAlgorithm,
     RefineAlgorithm,
     SimplifyAlgorithm,

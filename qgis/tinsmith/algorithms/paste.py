@@ -73,6 +73,40 @@ class MergeAlgorithm(CommandAlgorithm):
         return [self.verb, *files, *run.list_options(self.options), *run.list_extra()]
 
 
+class CoregisterAlgorithm(CommandAlgorithm):
+    """Shift one TIN upon another."""
+
+    verb = "coregister"
+    title = "Coregister TIN"
+    summary = "Shifts a TIN horizontally and vertically upon another, after Nuth and Kääb."
+    explanation = (
+        "The shift is found where the ground is the same in both; what has changed has no weight. "
+        "The log tells the shift, and how the surfaces differ before and after it. Flat ground, "
+        "and ground that slopes to one side alone, do not determine a shift and are refused."
+    )
+    surfaces = (Surface("SHIFTED", "Surface that is shifted"), Surface("REFERENCE", "Reference"))
+    lines = (
+        Lines("STABLE", "Stable ground", "--stable", "Where it is the same.", kind=POLYGONS),
+        Lines("UNSTABLE", "Unstable ground", "--unstable", "Where it is not.", kind=POLYGONS),
+    )
+    options = (number("SPACING", "Side of a cell", "--spacing", "In units of the CRS.", least=0.0),)
+
+    def add_outputs(self) -> None:
+        """Add the TIN, and counts for models."""
+        self.add_mesh_output("Shifted TIN")
+        self.add_counts()
+
+    def make(self, run: Run) -> dict[str, Any]:
+        """Coregister."""
+        return self.make_mesh(run, "Shifted TIN")
+
+    def list_inputs(self, run: Run) -> list[str]:
+        """Return all arguments but the outputs."""
+        files = [word for one in self.surfaces for word in run.list_tin(one)]
+        chosen = [*run.list_lines(self.lines), *run.list_options(self.options)]
+        return [self.verb, *files, *chosen, *run.list_extra()]
+
+
 class ClipAlgorithm(CommandAlgorithm):
     """Keep the part of a TIN inside polygons, or outside them."""
 

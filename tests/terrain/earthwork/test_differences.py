@@ -170,6 +170,7 @@ def test_statistics_of_a_ramp_are_those_of_a_uniform_distribution():
         "median": 1.0,
         "p75": 2.0,
         "p95": 2.8,
+        "nmad": 1.4826,
         "area": 16.0,
     }
     assert {name: float(values[0]) for name, values in table.columns.items()} == pytest.approx(
@@ -193,6 +194,21 @@ def test_percentiles_are_those_of_a_fine_sample():
     heights = other.interpolate(places) - tin.interpolate(places)
     expected = np.percentile(heights[~np.isnan(heights)], [5, 25, 50, 75, 95])
     assert found.percentiles([5, 25, 50, 75, 95]) == pytest.approx(expected, abs=0.01)
+
+
+def test_the_nmad_is_that_of_a_fine_sample_and_0_where_most_has_not_changed():
+    tin, other = rough(60, 40), rough(60, 41)
+    places = np.random.default_rng(0).random((200_000, 2)) * 100
+    heights = other.interpolate(places) - tin.interpolate(places)
+    heights = heights[~np.isnan(heights)]
+    expected = 1.4826 * np.median(np.abs(heights - np.median(heights)))
+    found = ts.difference(tin, other).statistics["nmad"][0]
+    assert found == pytest.approx(expected, abs=0.01)
+    raised = ts.difference(tin, tin.transform(lambda points: points + np.array([0, 0, 0.25])))
+    assert raised.statistics["median"][0] == pytest.approx(0.25)
+    assert raised.statistics["nmad"][0] == pytest.approx(0.0, abs=1e-12)
+    hill = square([0] * 4)
+    assert ts.difference(hill, hill).statistics["nmad"][0] == 0.0
 
 
 def test_an_area_without_change_is_a_step_of_the_percentiles():

@@ -291,3 +291,13 @@ def test_a_raster_of_which_no_cell_has_all_neighbors_is_refused():
     np.testing.assert_array_equal(edges.bands["roughness"], 0.0)
     with pytest.raises(ts.PointsError, match="1 row"):
         ts.rasterize(tin, spacing=2, value="roughness", compute_edges=True, lazy=True)
+
+
+@pytest.mark.parametrize(
+    ("value", "operator"), [one[:2] for one in ASKED] + [(CURVATURES[0], None)]
+)
+def test_elevations_that_overflow_are_refused(value, operator):
+    points = [[0, 0, 1e160], [40, 0, -1e160], [40, 40, 1e160], [0, 40, -1e160]]
+    tin = ts.triangulate(points)
+    with pytest.raises(ts.PointsError, match="overflow"):
+        ts.rasterize(tin, spacing=4, value=value, operator=operator)

@@ -64,7 +64,7 @@ def diff(
     facts.add("Mean", f"{_format(table, 'mean')}, root mean square {_format(table, 'rms')}")
     facts.add("Range", f"{_format(table, 'lowest')} to {_format(table, 'highest')}")
     middle = f"{_format(table, 'median')}, 90 % {_format(table, 'p05')} to {_format(table, 'p95')}"
-    facts.add("Middle", middle)
+    facts.add("Middle", f"{middle}, NMAD {_format(table, 'nmad')}")
     facts.add("Area", _format(table, "area"))
     if "level_of_detection" in found.volumes.columns:
         facts.add("Changed", _list_changed(found.volumes), volumes=_list_volumes(found.volumes))
