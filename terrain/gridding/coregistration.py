@@ -92,6 +92,16 @@ class Coregistration:
         How many were taken.
     notes : tuple of str
         What was assumed or converted, and of how many cells the shift is.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import tinsmith as ts
+    >>> x, y = (axis.ravel() for axis in np.meshgrid(np.arange(30.0), np.arange(30.0)))
+    >>> ground = np.column_stack([x, y, 5 * np.sin(x / 6) + 4 * np.cos(y / 5)])
+    >>> found = ts.coregister(ts.triangulate(ground + [0, 0, 2]), ts.triangulate(ground))
+    >>> found.statistics["median"].round(6).tolist(), round(found.shift[2], 6)
+    ([2.0, 0.0], -2.0)
     """
 
     tin: TIN
@@ -101,7 +111,17 @@ class Coregistration:
     notes: tuple[str, ...]
 
     def with_notes(self, notes: Sequence[str]) -> Coregistration:
-        """Return the same with further notes in front of its own, those of its parts too."""
+        """Return the same with further notes in front of its own, those of its parts too.
+
+        Examples
+        --------
+        >>> import numpy as np
+        >>> import tinsmith as ts
+        >>> x, y = (axis.ravel() for axis in np.meshgrid(np.arange(30.0), np.arange(30.0)))
+        >>> hills = ts.triangulate(np.column_stack([x, y, 5 * np.sin(x / 6) + 4 * np.cos(y / 5)]))
+        >>> ts.coregister(hills, hills).with_notes(["Flown once."]).statistics.notes[0]
+        'Flown once.'
+        """
         joined = join_notes(notes, self.notes)
         if joined == self.notes:
             return self
