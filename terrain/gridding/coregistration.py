@@ -53,6 +53,8 @@ _FITS = 4
 """Rounds of weights in each step."""
 _WORSE = 1.02
 """What the NMAD may be of the one before: of surfaces that lie upon each other already."""
+_ROUNDING = 1e-9
+"""Of a cell and of what the surfaces differ by: NMADs that differ by less are the same."""
 _FLAT = 1e-9
 """Slope, of one direction: less is rounding."""
 _ONE_SIDED = 0.02
@@ -234,7 +236,8 @@ def coregister(
     _require_likeness(found, tin.crs)
     shift[2] -= float(np.median(found.apart))
     after = found.apart - np.median(found.apart)
-    if not measure_nmad(after) <= _WORSE * measure_nmad(before):
+    rounding = _ROUNDING * (pair.grid.spacing + abs(float(np.median(before))))
+    if not measure_nmad(after) <= _WORSE * measure_nmad(before) + rounding:
         raise PointsError(
             "No shift was found by which the surfaces differ less: the NMAD of their differences "
             f"was {measure_nmad(before):.4g} and would be {measure_nmad(after):.4g}, in the unit "

@@ -33,7 +33,9 @@ def ground():
     return build(make_points(hills))
 
 
-@pytest.mark.parametrize("shift", [(0.0, 0.0, 0.0), (0.3, -0.7, 0.05), (5.25, 3.5, -20.0)])
+@pytest.mark.parametrize(
+    "shift", [(0.0, 0.0, 0.0), (0.0, 0.0, 2.0), (0.3, -0.7, 0.05), (5.25, 3.5, -20.0)]
+)
 def test_a_surface_that_was_moved_comes_back(ground, shift):
     """The oracle is the move itself; the shifted surface has the points of the first."""
     moved = build(make_points(hills) + shift)
@@ -43,7 +45,7 @@ def test_a_surface_that_was_moved_comes_back(ground, shift):
     assert ts.check(found.tin).ok
     before, after = found.statistics["nmad"]
     assert after <= 1e-6
-    assert after <= before
+    assert after <= before + 1e-9
     assert found.statistics["state"].tolist() == ["before", "after"]
 
 
