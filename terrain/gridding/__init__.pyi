@@ -13,8 +13,8 @@ from .grids import require_cells as require_cells
 from .grids import require_overlap as require_overlap
 from .grids import to_grid as to_grid
 from .ground_heights import height_above as height_above
-from .operators import GridMeasure as GridMeasure
 from .operators import OPERATORS as OPERATORS
+from .operators import GridMeasure as GridMeasure
 from .operators import OperatorBand as OperatorBand
 from .operators import describe_no_value as describe_no_value
 from .operators import make_measure as make_measure

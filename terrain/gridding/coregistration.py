@@ -18,8 +18,7 @@ from ...base.progress import Progress
 from ...base.results import Table, locate_centers
 from ...base.sentences import counted
 from ...base.types import Bounds, Grid
-from ...tin.constraints import in_rings
-from ...tin.constraints.polygons import gather_rings_of_regions
+from ...tin.constraints import gather_rings_of_regions, in_rings
 from .bands import SurfaceBand
 from .grids import cover, describe_extent, require_overlap
 
