@@ -33,6 +33,11 @@ _LONGEST = 100
 _STYLE = "SHEETS"
 _SPACE = 20.0
 """Millimetres between sheets."""
+_WHITE = "#ffffff"
+_GREY, _HALF = 8, 128
+"""A number that all programs show grey, and how light a grey is from where on it has that."""
+_FOREGROUND = 7
+"""The number that is black on white windows, and white on black ones."""
 
 
 def write_drawing(
@@ -123,7 +128,9 @@ class DxfCanvas:
             self._space.add_lwpolyline(self._place(part).tolist(), dxfattribs=how)
 
     def fill(self, rings: Sequence[Float64Array], color: str, name: str) -> None:
-        """Fill the area within rings."""
+        """Fill the area within rings; white is what a drawing has without."""
+        if color in (_WHITE, "white"):
+            return
         hatch = self._space.add_hatch(dxfattribs=self._style(name, color))
         for ring in rings:
             hatch.paths.add_polyline_path(self._place(ring[:-1]).tolist(), is_closed=True)
@@ -169,10 +176,10 @@ class DxfCanvas:
 
     def _style(self, name: str, color: str) -> dict[str, Any]:
         layer = self._layers.get(name, self._layers[""])
-        value = int(color[1:], 16) if color.startswith("#") else 0xFFFFFF
+        chosen = _find_color(color)
         if layer not in self._document.layers:
-            self._document.layers.add(layer).dxf.true_color = value
-        return {"layer": layer, "true_color": value}
+            self._document.layers.add(layer).update_dxf_attribs(chosen)
+        return {"layer": layer, **chosen}
 
     def _find_linetype(self, dashes: tuple[float, ...]) -> str:
         name = "DASHES_" + "_".join(f"{10 * one:.0f}" for one in dashes)
@@ -184,3 +191,12 @@ class DxfCanvas:
             pattern = [sum(map(abs, lengths)), *lengths]
             self._document.linetypes.add(name, pattern, description="dashes of sheets")
         return name
+
+
+def _find_color(color: str) -> dict[str, int]:
+    """Return the attribute of a colour; ink and greys are seen on windows of any colour."""
+    value = int(color[1:], 16)
+    channels = value.to_bytes(3, "big")
+    if min(channels) < max(channels):
+        return {"true_color": value}
+    return {"color": _FOREGROUND if channels[0] < _HALF else _GREY}

@@ -315,3 +315,17 @@ def test_texts_that_had_no_room_are_told(site, tmp_path):
     assert not any("cut" in note for note in made.notes)
     made.save(tmp_path / "road.pdf")
     assert any(note.startswith("Texts were cut") for note in made.notes)
+
+
+def test_ink_of_the_drawing_is_seen_on_windows_of_any_colour(site, tmp_path):
+    """Number 7 is black on white windows; true colours are those of surfaces and areas."""
+    import ezdxf
+
+    (path,) = ts.section_sheets(site, LINE, **WHERE).save(tmp_path / "a.dxf")
+    drawn = list(ezdxf.readfile(path).modelspace())
+    texts = [one for one in drawn if one.dxftype() == "TEXT" and one.dxf.layer == "SHEET"]
+    assert texts
+    assert {one.dxf.color for one in texts} == {7}
+    grey = [one.rgb for one in drawn if one.rgb is not None and len({*one.rgb}) == 1]
+    assert grey == []
+    assert len({one.rgb for one in drawn if one.rgb is not None}) >= 4
