@@ -117,6 +117,7 @@ JOBS = {
     "erase": "build points.csv --crs EPSG:32616 --erase ring.csv -o out.ply",
     "clip": "clip a.ply --by ring.csv -o out.ply",
     "volume": "volume a.ply --base 320 --regions ring.csv -o out.csv",
+    "coregister": "coregister hills.ply hills.ply --stable ring.csv --spacing 4 -o out.ply",
     "grade": "grade a.ply --pad ring.csv --elevation 321 --cut-slope 2 --fill-slope 2 -o out.ply",
 }
 
@@ -128,6 +129,8 @@ def folder(tmp_path, monkeypatch):
     points = np.column_stack([752700 + x, 4024220 + y, 320 + 0.02 * x + 0.01 * y])
     write_table(tmp_path / "points.csv", points)
     ts.write(ts.triangulate(points, crs=UTM, elevation_unit="m"), "a.ply")
+    points[:, 2] += 5 * np.sin(x / 15) + 4 * np.cos(y / 12)
+    ts.write(ts.triangulate(points, crs=UTM, elevation_unit="m"), "hills.ply")
     write_table(tmp_path / "line.csv", LINE)
     write_table(tmp_path / "ring.csv", RING, header="x,y")
     (tmp_path / "lane.csv").write_text(

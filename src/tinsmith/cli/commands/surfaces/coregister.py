@@ -57,7 +57,7 @@ def coregister(
     planned = job.plan(job.list_inputs(*files, more=more), "TIN", "Table")
     surfaces = job.read_tins(files)
     chosen: dict[str, Any] = {
-        name: None if path is None else job.read_features(path, surfaces[1])
+        name: None if path is None else job.read_features(path, surfaces[1], "polygons")
         for name, path in polygons.items()
     }
     with job.step("Finding the shift") as progress:
