@@ -18,6 +18,7 @@ import pytest
 from support import processes
 from support.blocks import list_pages, name_page, read_blocks
 from support.commands import run_command
+from support.lidar_files import make_cloud, write_copc
 from support.orthos import write_grey
 
 import tinsmith
@@ -367,6 +368,7 @@ def names_of_pages(tmp_path, monkeypatch):
     line = middle + np.array([[-40, -20], [40, 20]])
     ts.write(ts.rasterize(ground, spacing=2.0), "other.tif")
     write_grey(ground, Path("ortho.tif"))
+    write_copc(Path("cloud.copc.laz"), make_cloud(400))
     ts.write(ts.Alignment.from_points(line, crs=ground.crs), "road.xml")
     lines = {"line": line, "centreline": line, "roads": ts.contours(ground, interval=2.0)}
     rings = {"ring": middle + corners, "polygon": middle + corners + np.array([25, 0])}
