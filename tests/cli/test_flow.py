@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 
 import numpy as np
 import pytest
@@ -51,6 +52,14 @@ def test_what_is_found_is_what_the_library_finds(site, tmp_path):
         told = json.loads(done.stdout)
         for name, column in wanted.columns.items():
             assert [row[name] for row in told["found"]] == column.tolist()
+
+
+def test_numbers_of_vertices_are_whole(site, tmp_path):
+    done = run("flow", site, "--find", "accumulation", "-o", tmp_path / "a.json")
+    assert done.exit_code == 0, done.stderr
+    ends = re.findall(r"end (\S+?),", done.output)
+    assert ends
+    assert all(one.isdecimal() for one in ends)
 
 
 def test_outlets_are_places_or_those_of_a_file(site, tmp_path):

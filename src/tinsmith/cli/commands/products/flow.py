@@ -131,7 +131,8 @@ def _describe_row(found: Features, row: int) -> str:
     for name in _TOLD:
         if name in found.columns:
             value = found.columns[name][row]
-            text = value if isinstance(value, str) else f"{value:,.2f}"
+            is_measured = found.columns[name].dtype.kind == "f"
+            text = f"{value:,.2f}" if is_measured else str(value)
             unit = name_unit(found.units, name)
             parts.append(f"{name.replace('_', ' ')} {text} {unit}".strip())
     return ", ".join(parts)
