@@ -89,7 +89,7 @@ def test_contours_are_written_as_a_drawing(tmp_path):
     ts.write(ts.triangulate(ROWS, crs="EPSG:32616", elevation_unit="m"), tmp_path / "a.ply")
     run("contours", tmp_path / "a.ply", "--interval", "0.5", "-o", tmp_path / "c.dxf")
     layers = {one.dxf.layer for one in ezdxf.readfile(tmp_path / "c.dxf").modelspace()}
-    assert layers <= {"CONTOURS", "INDEX_CONTOURS"}
+    assert layers <= {"CONTOURS", "INDEX_CONTOURS", "CONTOUR_LABELS"}
     assert layers
 
 

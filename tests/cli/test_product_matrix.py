@@ -62,6 +62,11 @@ def count(path, kind):
 
         with rasterio.open(path) as found:
             return found.shape
+    if path.suffix == ".ifc":  # which is written alone
+        import ifcopenshell
+
+        (surface,) = ifcopenshell.open(str(path)).by_type("IfcTriangulatedIrregularNetwork")
+        return len(surface.Coordinates.CoordList)
     if kind == "TIN":
         return len(ts.read(path, **({"crs": HILL.crs} if ".geojson" in path.name else {})).points)
     return len(read_geometries(path, crs=HILL.crs))
