@@ -363,7 +363,11 @@ def compare_option(option, parameter, name):
     known = option.default if isinstance(option.default, (int, float, str)) else None
     if parameter["type"] == "enum":
         if isinstance(option.type, Choice):
-            assert sorted(option.type.choices) == sorted(parameter["choices"]), (name, parameter)
+            # An option without a default has a first choice that leaves it out.
+            unset = {"as usual"} if known is None else set()
+            chosen = set(parameter["choices"]) - unset
+            assert sorted(option.type.choices) == sorted(chosen), (name, parameter)
+            assert parameter["choices"][0] in {*unset, *option.type.choices}
         if known is not None:
             assert str(known) == parameter["default"], (name, parameter)
     elif parameter["type"] == "number" and parameter["name"] != "STRIDE":
