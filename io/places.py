@@ -7,7 +7,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from ..base.crs import CRS
-from ..base.errors import CrsError, ReadError
+from ..base.errors import ReadError
 from ..base.results import Features
 from ..base.sentences import FILE
 from ..tin import Survey
@@ -95,12 +95,7 @@ def _require_points(found: Features) -> Features:
 
 
 def _take_rows(points: QueryPoints, crs: CRS | None) -> Features:
-    if points.is_degrees and not (crs is not None and crs.is_geographic):
-        raise CrsError(
-            f"Points of {FILE} are longitudes and latitudes by their header, and lengths are "
-            "needed: transform them first.",
-            crs=crs,
-        )
+    points.require_lengths(crs)
     columns = _name_columns(points.columns)
     return Features.of_points(points.xy, columns=columns, crs=crs, notes=points.notes)
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from ...base.errors import OptionError, ReadError
+from ...base.errors import CrsError, OptionError, ReadError
 from ...base.sentences import FILE, counted
 from ...tin.screening import AreaOfUse
 from ..door import names_its_file
@@ -41,6 +41,15 @@ class QueryPoints:
     """Whether the columns of coordinates are called longitude and latitude."""
     notes: tuple[str, ...]
     """What was assumed."""
+
+    def require_lengths(self, crs: CRS | None) -> None:
+        """Refuse, by a CrsError, longitudes and latitudes, but where the CRS has them."""
+        if self.is_degrees and not (crs is not None and crs.is_geographic):
+            raise CrsError(
+                f"Points of {FILE} are longitudes and latitudes by their header, and lengths are "
+                "needed: transform them first.",
+                crs=crs,
+            )
 
 
 class TextTable(NamedTuple):

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from ...base import optional
-from ...base.errors import CrsError, ReadError
+from ...base.errors import ReadError
 from ...base.sentences import FILE, counted
 from ..delimited import parse_name, read_query_points
 from ..isolated import open_ordinary_file, require_local
@@ -96,12 +96,7 @@ def _read_vertices(path: Path, wanted: Wanted, *, drape: bool) -> _Vertices:
         return _read_survey(path, wanted)
     if not drape and any(parse_name(name).role == "elevation" for name in found.columns):
         return _read_survey(path, wanted)
-    if found.is_degrees and not (wanted.crs is not None and wanted.crs.is_geographic):
-        raise CrsError(
-            f"Points of {FILE} are longitudes and latitudes by their header, and lengths are "
-            "needed: transform them first.",
-            crs=wanted.crs,
-        )
+    found.require_lengths(wanted.crs)
     return _Vertices(found.xy, wanted.crs, found.notes)
 
 

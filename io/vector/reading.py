@@ -75,12 +75,13 @@ def _reading(
     drape: bool = False,
     notes: list[str] | None = None,
     check_crs: bool = True,
+    table: str = "lines",
 ) -> Iterator[_Lines]:
-    """Yield the lines of a file, of which errors speak."""
+    """Yield the lines of a file, of which errors speak; ``table`` is what the rows of one make."""
     file, wanted = as_path(path), Wanted(CRS.of(crs), Unit.of(target_unit), Unit.of(elevation_unit))
     with naming_file(file), checking_crs(check_crs):
         if layer is None and where is None and is_point_table(file):
-            features = read_point_table(file, wanted, drape=drape)
+            features = read_point_table(file, wanted, drape=drape, kind=table)
         else:
             features = read_features(file, layer=layer, where=where, lines_only=True)
         parts = split_into_parts(features, wanted, drape=drape, notes=notes)
@@ -225,7 +226,7 @@ def read_rings(path: str | os.PathLike[str], **options: Unpack[LineOptions]) -> 
     ...     [len(ring) for ring in ts.read_rings(path)]
     [3]
     """
-    with _reading(path, **options) as (features, parts, _):
+    with _reading(path, **options, table="polygons") as (features, parts, _):
         return [_require_ring(part, features) for part in parts]
 
 
@@ -263,7 +264,7 @@ def read_polygons(
     [[3]]
     """
     polygons: list[list[Float64Array]] = []
-    with _reading(path, **options) as (features, parts, _):
+    with _reading(path, **options, table="polygons") as (features, parts, _):
         for part in parts:
             if part.ring == 0:
                 polygons.append([])
@@ -310,7 +311,7 @@ def read_water(
     ...     [pond.z for pond in ts.read_water(path)]
     [5.0]
     """
-    with _reading(path, **options) as (features, parts, wanted):
+    with _reading(path, **options, table="polygons") as (features, parts, wanted):
         island = next((part for part in parts if part.ring > 0), None)
         if island is not None:
             raise ReadError(
@@ -326,7 +327,7 @@ def read_water(
 
 
 def _require_ring(part: Part, features: Layer) -> Float64Array:
-    if not part.is_closed and not is_point_table(features.path):
+    if not part.is_closed:
         raise ReadError(
             f"{features.label(part.row)} is an open line: a polygon or a closed line is needed."
         )

@@ -15,8 +15,8 @@ from ...tin import Survey
 from .bands import SurfaceBand
 from .grids import as_grid, describe_extent
 from .ground_heights import place_points
-from .point_cells import add_cells, find_highest, locate_cells, make_empty
-from .point_rasters import list_notes, require_points
+from .point_cells import find_highest, locate_cells
+from .point_rasters import fill_cells, list_notes
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -89,10 +89,7 @@ def rasterize_canopy(
     points, noted = place_points(cloud, tin)
     cells, notes = as_grid(tin, spacing=spacing, like=like, grid=grid, in_memory=True)
     highest = find_highest(cells, points, points[:, 2])
-    require_points(highest is not None, cells)
-    surface = make_empty(cells.shape, is_count=False)
-    if highest is not None:
-        add_cells(surface[highest.rows, highest.columns], highest.values)
+    surface = fill_cells(cells, highest, is_count=False)
     band = SurfaceBand(tin, cells, None, method="linear", is_mean=False, threads=threads)
     terrain = band[0 : cells.shape[0], 0 : cells.shape[1]]
     height = surface - terrain

@@ -76,7 +76,7 @@ def rasterize_counts(
     block = count_points(cells, xyz)
     crs = survey.crs
     return Raster(
-        {"count": _fill(cells, block, is_count=True)},
+        {"count": fill_cells(cells, block, is_count=True)},
         cells,
         crs=None if crs is None else crs.horizontal,
         name="count",
@@ -145,7 +145,7 @@ def rasterize_heights(
     require_points(block is not None, cells)
     outside = int(np.count_nonzero(np.isnan(heights)))
     return Raster(
-        {"height": _fill(cells, block, is_count=False)},
+        {"height": fill_cells(cells, block, is_count=False)},
         cells,
         crs=None if tin.crs is None else tin.crs.horizontal,
         units={"height": tin.elevation_unit},
@@ -172,7 +172,8 @@ def measure_heights(points: Float64Array, ground: Float64Array) -> Float64Array:
     return found
 
 
-def _fill(grid: Grid, block: CellBlock | None, *, is_count: bool) -> Any:
+def fill_cells(grid: Grid, block: CellBlock | None, *, is_count: bool) -> Any:
+    """Return cells with the values of a block; refuse, by a PointsError, that there is none."""
     cells = make_empty(grid.shape, is_count=is_count)
     require_points(block is not None, grid)
     if block is not None:
