@@ -25,6 +25,8 @@ if TYPE_CHECKING:
 
 _GEOMETRIES = re.compile(r"\b(wkt|geom|geometry|the_geom|linestring|polygon)", re.IGNORECASE)
 _HEAD = 4096
+_OF_LINES = re.compile(r"(poly)?(line|gon|ring|part|string|feature|axis)[ _]?(id|no|nr|number)?")
+"""Names of columns that tell which of several lines a vertex belongs to."""
 _FEWEST = {"lines": (2, "line"), "polygons": (3, "polygon")}
 
 
@@ -94,6 +96,13 @@ def _read_vertices(path: Path, wanted: Wanted, *, drape: bool) -> _Vertices:
         found = read_query_points(path, crs=wanted.crs)
     except ReadError:  # a survey without a header, that another reader knows
         return _read_survey(path, wanted)
+    for name, values in found.columns.items():
+        count = len(set(values.tolist()))
+        if _OF_LINES.fullmatch(name.strip().lower()) and 1 < count < len(values):
+            raise ReadError(
+                f"{FILE} has a column '{name}' with {count} values, which may tell as many lines: "
+                "a table is one line; write several to a vector file."
+            )
     if not drape and any(parse_name(name).role == "elevation" for name in found.columns):
         return _read_survey(path, wanted)
     found.require_lengths(wanted.crs)

@@ -82,6 +82,7 @@ def test_degrees_come_into_the_crs(tmp_path):
     [
         ("x,y,z\n1,2,3\n", "'a.csv' has 1 point: a line has 2 or more"),
         ("x,y,z\n1,2,3\n2,3,\n4,5,6\n", r"1 row without an elevation .*first: line 3"),
+        ("line,x,y,z\n1,0,0,5\n1,9,0,5\n2,0,9,5\n2,9,9,5\n", "a column 'line' with 2 values"),
         ("a,b\nc,d\n", "'a.csv'"),
         ("x,y,z\n1,2,3\n2,oak,4\n", "oak"),
         ("", "'a.csv' holds no points"),
