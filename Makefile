@@ -18,6 +18,8 @@ unexport PYTHONDONTWRITEBYTECODE
 # Pins reach the isolated build of the core too.
 export PIP_CONSTRAINT := $(CURDIR)/constraints.txt
 export PIP_DISABLE_PIP_VERSION_CHECK := 1
+# Python compiles what is imported: compiling all of VTK beforehand would take longer than the demo.
+export PIP_COMPILE := 0
 
 .DEFAULT_GOAL := help
 .PHONY: help setup demo test check bench proof fuzz format clean
@@ -27,15 +29,21 @@ help: ## List the commands
 
 setup: $(READY) ## Build the core and install everything into .venv
 
-# What users have. The group dev holds all extras too: naming them here would build the core again.
+# What users have; the libraries arrive while the core compiles. The group dev holds all extras too:
+# naming them here would build the core again.
+LIBRARIES := $(VENV)/libraries.txt
 $(INSTALLED): pyproject.toml constraints.txt CMakeLists.txt $(CORE)
 	@test -x $(BIN)/python || $(PYTHON) -m venv $(VENV)
-	$(BIN)/python -m pip install --quiet --editable .
+	@$(BIN)/python -c "import tomllib; \
+	  print(*tomllib.load(open('pyproject.toml', 'rb'))['project']['dependencies'], sep='\n')" > $(LIBRARIES)
+	@$(BIN)/python -m pip install --quiet --requirement $(LIBRARIES) & libraries=$$!; \
+	  $(BIN)/python -m pip install --quiet --no-deps --editable .; core=$$?; \
+	  wait $$libraries && exit $$core
 	@touch $(INSTALLED)
 
 $(READY): $(INSTALLED)
 	$(BIN)/python -m pip install --quiet --upgrade pip
-	$(BIN)/python -m pip install --quiet --no-compile --group dev
+	$(BIN)/python -m pip install --quiet --group dev
 	@touch $(READY)
 
 demo: $(INSTALLED) ## Build both samples into demo/: TINs, pictures, contours, a profile, volumes
@@ -84,6 +92,10 @@ page: ## Build the code of the 3D page anew from its sources; needs Node.js
 .PHONY: slow
 slow: $(READY) ## Run the tests of many seconds that `make test` leaves to CI
 	$(ROOM) $(BIN)/python -m pytest -q $(PYTEST_WORKERS) -m slow
+
+.PHONY: durations
+durations: $(READY) ## Time all tests: those that take long are left to `make slow`
+	$(ROOM) $(BIN)/python -m pytest -q $(PYTEST_WORKERS) -m "slow or not slow" --record-durations
 
 # dist/ gets the same bytes for the same commit: times are those of the commit. The wheel is for this
 # machine; those of all platforms are made by cibuildwheel.

@@ -6,9 +6,8 @@ import gc
 
 import hypothesis
 import pytest
-from support import each_value
+from support import durations, each_value, no_skips
 from support.no_skips import (  # noqa: F401 - hooks
-    pytest_addoption,
     pytest_make_collect_report,
     pytest_runtest_makereport,
 )
@@ -29,6 +28,16 @@ hypothesis.settings.load_profile("tinsmith")
 gc.disable()
 
 
+def pytest_addoption(parser):
+    no_skips.pytest_addoption(parser)
+    parser.addoption("--record-durations", action="store_true", help="write durations.json anew")
+
+
+def pytest_configure(config):
+    if config.getoption("--record-durations") and not hasattr(config, "workerinput"):
+        config.pluginmanager.register(durations.Recorder(), "durations")
+
+
 @pytest.fixture(scope="session")
 def can_draw():
     """Skip the test where no picture can be drawn."""
@@ -40,7 +49,7 @@ def can_draw():
 
 def pytest_collection_modifyitems(config, items):
     each_value.mark_other_cases(items)
-    each_value.mark_later_cases(items)
+    durations.mark_long_tests(items, durations.read_durations())
     left_out = [name for name in ("proof", "slow") if name not in config.option.markexpr]
     left = {item for name in left_out for item in items if item.get_closest_marker(name)}
     config.hook.pytest_deselected(items=[item for item in items if item in left])

@@ -5,7 +5,7 @@ from __future__ import annotations
 from itertools import product
 
 import pytest
-from support.each_value import choose_cases, mark_later_cases, mark_other_cases
+from support.each_value import choose_cases, mark_other_cases
 
 
 @pytest.mark.each_value
@@ -38,13 +38,3 @@ def test_cases_that_are_left_out_are_proofs(request):
     proofs = {one.nodeid for one in every if one.get_closest_marker("proof")}
     assert (len(every), len(proofs)) == (15, 11)
     assert proofs.isdisjoint(one.nodeid for one in request.session.items)
-
-
-@pytest.mark.parametrize("number", range(5))
-def test_later_cases_are_slow(number, request):
-    cases = [one for one in request.node.parent.collect() if "later_cases" in one.nodeid]
-    for case in cases:
-        case.add_marker(pytest.mark.first_cases(number))
-    mark_later_cases(cases)
-    slow = [one.get_closest_marker("slow") is not None for one in cases]
-    assert slow == [False] * number + [True] * (5 - number)

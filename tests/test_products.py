@@ -15,6 +15,9 @@ import tinsmith as ts
 from tinsmith.base.products import is_product
 from tinsmith.tin.surface import Surface
 
+# A new command, product or format must not be forgotten, whatever the walk over all of them takes.
+pytestmark = pytest.mark.every_case
+
 
 class Live(ts.TIN):
     """A TIN that someone edits all the time: only a snapshot of it can be relied on."""

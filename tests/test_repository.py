@@ -26,6 +26,9 @@ import tinsmith as ts
 import tinsmith.cli
 from benchmarks.structure import measure as measure_structure
 
+# A contract that `make test` does not check would be broken until CI runs.
+pytestmark = pytest.mark.every_case
+
 ROOT = Path(__file__).parents[1]
 
 
@@ -198,6 +201,7 @@ def test_every_public_name_is_there():
         assert getattr(tinsmith, name) is not None
 
 
+@pytest.mark.slow
 def test_public_examples_run():
     """Run the examples of every docstring in every package, but that which draws in 3D."""
     names = ["tinsmith"]
@@ -399,6 +403,7 @@ def test_sessions_of_the_pages_say_what_they_show(page, names_of_pages):
     assert said == []
 
 
+@pytest.mark.slow
 def test_readme_commands_run(tmp_path, monkeypatch, can_draw):
     """Run the first as a user does, the others, which need what it writes, in this process."""
     (tmp_path / "sample_data").symlink_to(ROOT / "sample_data")

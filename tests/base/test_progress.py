@@ -239,7 +239,6 @@ def test_rasters_are_read_with_fractions(dem):
     assert_same(told, ts.read(dem, stride=8))
 
 
-@pytest.mark.first_cases(1)
 @pytest.mark.parametrize("error", [OSError, ts.ReadError, KeyboardInterrupt])
 def test_whatever_it_raises_comes_out_of_reading(tiles, dem, tmp_path, points, error):
     raised = error("enough")
@@ -271,7 +270,6 @@ def test_files_are_written_with_fractions(tmp_path, tins, suffix):
         assert told.read_bytes() == plain.read_bytes()
 
 
-@pytest.mark.first_cases(4)
 @pytest.mark.parametrize("suffix", [".ply", ".geojsons"])
 @pytest.mark.parametrize("error", [Enough, OSError, ts.WriteError, KeyboardInterrupt])
 def test_a_file_that_was_not_finished_is_not_there(tmp_path, tins, suffix, error):

@@ -400,7 +400,6 @@ def test_tools_take_turns():
     assert {len(seconds) for seconds in runs.values()} == {2}
 
 
-@pytest.mark.first_cases(2)
 @pytest.mark.parametrize(
     ("run", "tasks"),
     [

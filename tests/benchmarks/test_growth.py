@@ -16,7 +16,6 @@ def test_the_exponent_is_that_of_the_last_sizes(exponent):
     assert math.isnan(Growth(sizes[:2], times[:2]).exponent)
 
 
-@pytest.mark.first_cases(1)
 @pytest.mark.parametrize("data", DATASETS)
 def test_every_product_runs_on_every_data_set(data):
     for product in PRODUCTS.values():
@@ -26,7 +25,6 @@ def test_every_product_runs_on_every_data_set(data):
         assert (found.sizes, found.refusal) == ((60,), "")
 
 
-@pytest.mark.first_cases(1)
 @pytest.mark.parametrize("task", TASKS)
 def test_every_task_runs(task):
     found = measure(*TASKS[task], start=20, most=40, limit=9.0)

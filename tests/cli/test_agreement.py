@@ -13,6 +13,9 @@ import tinsmith as ts
 from tinsmith.cli.command_list import SUMMARIES
 from tinsmith.io.vector.geometries import read_geometries
 
+# A new command, product or format must not be forgotten, whatever the walk over all of them takes.
+pytestmark = pytest.mark.every_case
+
 CRS = "EPSG:32616"
 UTM = ("--crs", CRS, "--elevation-unit", "m")
 RING = [[700_030, 4_000_030], [700_060, 4_000_030], [700_060, 4_000_060], [700_030, 4_000_060]]

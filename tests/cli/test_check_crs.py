@@ -11,7 +11,8 @@ import tinsmith as ts
 from tinsmith.cli import main
 from tinsmith.cli.command_list import SUMMARIES
 
-pytestmark = pytest.mark.filterwarnings("ignore::tinsmith.LossWarning")
+# A new command, product or format must not be forgotten, whatever the walk over all of them takes.
+pytestmark = [pytest.mark.every_case, pytest.mark.filterwarnings("ignore::tinsmith.LossWarning")]
 
 CRS = "EPSG:32616"
 RNG = np.random.default_rng(4)

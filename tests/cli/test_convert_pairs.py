@@ -13,6 +13,9 @@ from support import matrix
 import tinsmith as ts
 from tinsmith.cli import main
 
+# A new command, product or format must not be forgotten, whatever the walk over all of them takes.
+pytestmark = pytest.mark.every_case
+
 FORMATS = [one for one in ts.io.known_formats() if one.is_built_in]
 WRITTEN = [one for one in FORMATS if one.write and set(one.writes) & {"TIN", "Survey", "Raster"}]
 

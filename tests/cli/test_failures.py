@@ -357,7 +357,6 @@ def test_a_result_with_nowhere_to_go_is_a_failure(folder):
     assert result.stderr == "Error: Cannot write to standard output: it is closed.\n"
 
 
-@pytest.mark.first_cases(1)
 @pytest.mark.parametrize("streams", ["2>&-", ">&- 2>&-", ">&- 2>&- <&-", "2>/dev/full"])
 def test_a_build_needs_no_standard_stream(folder, streams):
     Path("in.csv").write_text(SQUARE)
@@ -532,7 +531,6 @@ main(["build", "in.csv", "--crs", "EPSG:32616", "-o", "out.geojson"])
 """
 
 
-@pytest.mark.first_cases(1)
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
 def test_a_signal_while_writing_leaves_nothing(folder, number):
     Path("in.csv").write_text(SQUARE)

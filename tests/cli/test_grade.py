@@ -91,7 +91,6 @@ def ground_in_feet(tmp_path):
     return tmp_path / "ground.ply", table["fill"][0] / (1200 / 3937) ** 3
 
 
-@pytest.mark.first_cases(1)
 @pytest.mark.parametrize(
     ("crs", "options"), [("EPSG:32616+5703", ()), ("EPSG:32616", ("--lines-elevation-unit", "m"))]
 )

@@ -9,6 +9,9 @@ from support.commands import run_command
 
 from tinsmith.cli.command_list import SUMMARIES
 
+# A new command, product or format must not be forgotten, whatever the walk over all of them takes.
+pytestmark = pytest.mark.every_case
+
 RING = [[700_030, 4_000_030], [700_060, 4_000_030], [700_060, 4_000_060], [700_030, 4_000_060]]
 CRS = ("--crs", "EPSG:32616", "--elevation-unit", "m", "--skip-bad")
 SLOPES = ("--cut-slope", 2, "--fill-slope", 2)

@@ -163,7 +163,6 @@ def piped(command, text, *arguments):
     )
 
 
-@pytest.mark.first_cases(2)
 @pytest.mark.parametrize(
     "command",
     [

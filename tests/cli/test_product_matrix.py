@@ -21,7 +21,8 @@ from tinsmith.cli.outputs import DOCUMENTS
 from tinsmith.io.registry.lookup import known_formats
 from tinsmith.io.vector.geometries import read_geometries
 
-pytestmark = pytest.mark.filterwarnings("ignore::tinsmith.LossWarning")
+# A new command, product or format must not be forgotten, whatever the walk over all of them takes.
+pytestmark = [pytest.mark.every_case, pytest.mark.filterwarnings("ignore::tinsmith.LossWarning")]
 
 KINDS = {"Features": ts.Features, "Table": ts.Table, "Raster": ts.Raster, "TIN": ts.TIN}
 TABLES = (".csv", ".tsv", ".txt", ".json")

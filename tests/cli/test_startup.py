@@ -48,7 +48,6 @@ def test_help_of_a_command_loads_no_library(tmp_path):
     assert not modules_after(tmp_path, "build", "--help") & set(HEAVY.split())
 
 
-@pytest.mark.first_cases(2)
 @pytest.mark.parametrize(
     "job",
     [

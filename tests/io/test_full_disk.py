@@ -37,7 +37,6 @@ for share in shares:
 """
 
 
-@pytest.mark.first_cases(1)
 @pytest.mark.parametrize(("name", "form"), [("a.fgb", "-"), ("a.tif", "cog"), ("a.tif", "geotiff")])
 def test_a_file_without_its_end_is_refused(tmp_path, name, form):
     shares = [str(share) for share in SHARES]

@@ -3,7 +3,6 @@
 A test marked ``each_value`` has parameters of which each was proven by itself, such as products and
 formats: `make test` runs as many cases as the longest list of values has, each with the least used
 of the other lists. `make proof` runs the others, or `make slow` where it is ``others="slow"``.
-Of a test marked ``first_cases(2)`` these are run by `make test`, the others by `make slow`.
 """
 
 from __future__ import annotations
@@ -30,17 +29,6 @@ def choose_cases(cases: Sequence[tuple[object, ...]]) -> list[int]:
         for pair in pairs[best]:
             left.pop(pair, None)
     return sorted(chosen)
-
-
-def mark_later_cases(items: Iterable[pytest.Function]) -> None:
-    """Mark the cases of a test marked ``first_cases`` behind so many as slow."""
-    seen: Counter[tuple[str, str]] = Counter()
-    for item in items:
-        mark = item.get_closest_marker("first_cases")
-        if mark is not None:
-            seen[item.parent.nodeid, item.originalname] += 1
-            if seen[item.parent.nodeid, item.originalname] > mark.args[0]:
-                item.add_marker("slow")
 
 
 def mark_other_cases(items: Iterable[pytest.Function]) -> None:

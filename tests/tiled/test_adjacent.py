@@ -16,7 +16,6 @@ LIDAR = Path(__file__).parent.parent / "data" / "adjacent"
 CORNER = (770_550.0, 6_277_550.0)
 
 
-@pytest.mark.first_cases(1)
 @pytest.mark.filterwarnings("ignore:.* is a shapefile")
 @pytest.mark.parametrize("tiles", [1, 7])
 def test_cells_and_contours_are_those_of_all_points(tmp_path, tiles):

@@ -141,7 +141,6 @@ def test_files_that_become_too_large_are_told_and_the_run_goes_on(lidar, tmp_pat
     assert list_tree(tmp_path) == ["a.tif", "wanted.tif"]
 
 
-@pytest.mark.first_cases(3)
 @pytest.mark.parametrize("fails", range(0, 24, 3))
 def test_a_full_disk_at_any_file_loses_nothing(lidar, tmp_path, fails, monkeypatch):
     cloud = ts.tiles(lidar, classes=2)

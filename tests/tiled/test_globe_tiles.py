@@ -89,7 +89,6 @@ def test_bytes_do_not_depend_on_tiles_order_or_workers(lidar, made, tin, tmp_pat
             assert found[name] == wanted[name]
 
 
-@pytest.mark.first_cases(2)
 @pytest.mark.parametrize("most", [3, 9, 12, 15])
 def test_a_run_that_was_interrupted_goes_on(lidar, made, tmp_path, most):
     write = partial(

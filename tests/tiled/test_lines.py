@@ -161,7 +161,6 @@ def test_rasters_are_those_in_memory(folder, store, points, tmp_path, kind, rast
             assert dataset.bounds[:2] == (wanted.grid.bounds.xmin, wanted.grid.bounds.ymin)
 
 
-@pytest.mark.first_cases(4)
 @pytest.mark.parametrize("kind", LINES)
 def test_tiles_are_proven_and_mapped(folder, store, points, tmp_path, kind):
     tin = ts.triangulate(points, crs=CRS, **LINES[kind])

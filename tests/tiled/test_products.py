@@ -124,7 +124,6 @@ def test_volumes_to_a_surface_of_another_crs_are_refused(cloud, design, tmp_path
         cloud.volume(tmp_path / "a.csv", "design.ply", executor=Shuffled())
 
 
-@pytest.mark.first_cases(1)
 @pytest.mark.parametrize("unit", ["degrees", "percent", "ratio"])
 def test_statistics_of_slopes(cloud, tin, tmp_path, unit):
     def make(path, **way):

@@ -132,7 +132,6 @@ def test_bytes_do_not_depend_on_tiles_order_or_workers(lidar, made, tmp_path, wa
     require_same(made, cloud.write(tmp_path / "made", node_points=POINTS, **way, **executor))
 
 
-@pytest.mark.first_cases(2)
 @pytest.mark.parametrize("most", [4, 9, 20, 26])
 def test_a_run_that_was_interrupted_goes_on(lidar, made, tmp_path, most):
     write = partial(

@@ -296,7 +296,6 @@ def require_interrupted(program, seconds_before):
     assert child.returncode == -signal.SIGINT
 
 
-@pytest.mark.first_cases(1)
 @needs_posix_signals
 @pytest.mark.parametrize("threads", [1, 2])
 def test_ctrl_c_ends_triangulations_in_a_loop(threads):

@@ -275,7 +275,6 @@ def test_holes_and_parts_stay_open(tmp_path, seed):
         assert area == pytest.approx(surface.area, rel=1e-3)
 
 
-@pytest.mark.first_cases(1)
 @pytest.mark.parametrize(
     ("crs", "metres", "is_stated"),
     [("UTM 3D", 1.0, False), ("EPSG:32616+5703", 1.0, True), ("EPSG:2274+6360", 1200 / 3937, True)],

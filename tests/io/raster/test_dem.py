@@ -357,7 +357,6 @@ def test_all_nodata(raster):
     assert "of 20 cells of band 1, none" in fault(raster(array, nodata=-1))
 
 
-@pytest.mark.first_cases(1)
 @pytest.mark.parametrize("share", [0.05, 0.5, 0.9])
 def test_truncated_file_is_one_sentence_and_quiet(raster, tmp_path, share):
     path = raster(np.random.default_rng(1).random((200, 200)))

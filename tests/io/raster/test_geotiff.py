@@ -178,7 +178,6 @@ def test_blocks_are_asked_for_one_by_one(tmp_path, monkeypatch, form):
         np.testing.assert_array_equal(found.read(1), band[0:1100, 0:1700])
 
 
-@pytest.mark.first_cases(1)
 @pytest.mark.parametrize("form", FORMATS)
 def test_overviews_of_an_aspect_are_cells_of_it(tmp_path, form):
     """The mean of 359 and 1 degrees would be south."""

@@ -9,6 +9,9 @@ import pytest
 import tinsmith as ts
 from tinsmith.io.registry.lookup import known_formats
 
+# A new command, product or format must not be forgotten, whatever the walk over all of them takes.
+pytestmark = pytest.mark.every_case
+
 ATTRIBUTES = {
     "number": np.array(["1", "2", "A3"]),
     "description": np.array(["kerb", "", "edge of the pond"]),

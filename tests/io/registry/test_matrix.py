@@ -22,6 +22,9 @@ from support import matrix
 import tinsmith as ts
 from tinsmith.io.registry.format import KINDS
 
+# A new command, product or format must not be forgotten, whatever the walk over all of them takes.
+pytestmark = pytest.mark.every_case
+
 FORMATS = [one for one in ts.io.known_formats() if one.is_built_in]
 WRITTEN = [
     pytest.param(one, kind, id=f"{one.name}-{kind}")

@@ -77,7 +77,6 @@ def test_points_are_drawn_unless_they_would_be_a_crowd(count, is_drawn):
             assert line.get_marker() == "."
 
 
-@pytest.mark.first_cases(2)
 @pytest.mark.parametrize(
     ("width", "height", "expected"), [(1, 1, 1.0), (1, 9, 1.5), (9, 1, 0.3), (4, 3, 0.75)]
 )

@@ -119,7 +119,6 @@ def changed(tin, tmp_path):
     return with_lines[where], np.argwhere(where)
 
 
-@pytest.mark.first_cases(2)
 @pytest.mark.parametrize(
     ("lines", "is_color"),
     [
@@ -147,7 +146,6 @@ def test_a_line_is_drawn_where_it_is_and_a_soft_one_has_gaps(tmp_path, can_draw)
     assert len(np.unique(soft[:, 1])) < 0.9 * len(np.unique(hard[:, 1]))
 
 
-@pytest.mark.first_cases(1)
 @pytest.mark.parametrize(("y", "is_seen"), [(10.0, True), (90.0, False)])
 def test_a_hill_hides_the_lines_behind_it(tmp_path, can_draw, y, is_seen):
     points = ground()

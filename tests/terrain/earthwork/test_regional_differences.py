@@ -71,7 +71,6 @@ def test_zones_end_at_the_border_of_each_region():
         )
 
 
-@pytest.mark.first_cases(1)
 @pytest.mark.parametrize("regions", [None, APART, OVERLAPPING])
 def test_the_words_of_the_map_are_the_sums_of_the_table(regions):
     ground, design = rough(200, 1), rough(150, 2)

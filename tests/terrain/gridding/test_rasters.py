@@ -187,7 +187,6 @@ def plane_at(corners, place):
     return corners[0, 2] + gradient @ (place - corners[0, :2])
 
 
-@pytest.mark.first_cases(1)
 @pytest.mark.parametrize("mirror", [1.0, -1.0])
 def test_a_cell_that_is_touched_in_a_point_has_no_mean(mirror):
     """Rounding left it a value in one of two mirror images."""

@@ -314,7 +314,6 @@ def chequerboard(side):
     return ts.triangulate(np.column_stack([x, y, (x + y) % 2]))
 
 
-@pytest.mark.first_cases(1)
 @pytest.mark.parametrize(
     ("trace", "count", "what"),
     [

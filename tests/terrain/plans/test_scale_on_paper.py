@@ -119,7 +119,6 @@ def test_water_is_filled_with_its_area(site, site_page):
     assert shapely.Polygon(lake).area == pytest.approx(area, rel=1e-6)
 
 
-@pytest.mark.first_cases(2)
 @pytest.mark.parametrize(
     ("paper", "points"),
     [
@@ -141,7 +140,6 @@ def test_pages_have_the_size_of_the_paper(paper, points, tmp_path):
     assert (page.width, page.height) == pytest.approx(np.array(points) * 25.4 / 72, abs=1e-3)
 
 
-@pytest.mark.first_cases(2)
 @pytest.mark.parametrize(
     ("crs", "scale", "metres"),
     [

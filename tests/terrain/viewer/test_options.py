@@ -200,7 +200,6 @@ def test_level_ground_is_lit_alike_by_every_sun(altitude):
         assert math.degrees(math.atan2(east, north)) == pytest.approx(70.0)
 
 
-@pytest.mark.first_cases(1)
 @pytest.mark.usefixtures("can_draw")
 @pytest.mark.parametrize("azimuth", [0, 90, 225])
 def test_slopes_towards_the_sun_are_brightest(tmp_path, azimuth):
@@ -217,7 +216,6 @@ def test_slopes_towards_the_sun_are_brightest(tmp_path, azimuth):
     assert max(brightness, key=brightness.get) == azimuth
 
 
-@pytest.mark.first_cases(2)
 @pytest.mark.usefixtures("can_draw")
 @pytest.mark.parametrize("background", ["black", "dark", "light", "#204060", "#c8c8c8", "#808080"])
 def test_words_can_be_read_on_every_background(tmp_path, background):
@@ -246,7 +244,6 @@ def test_every_grey_has_ink_that_stands_out():
         assert abs(warning - paper) > 0.14
 
 
-@pytest.mark.first_cases(1)
 @pytest.mark.usefixtures("can_draw")
 @pytest.mark.parametrize("suffix", [".png", ".jpg", ".tif"])
 def test_dots_per_inch_are_written_into_the_picture(tmp_path, suffix):

@@ -101,7 +101,6 @@ class TestPicture:
         assert rows.max() < 50
         assert (named[10:50, :400] != 255).any()
 
-    @pytest.mark.first_cases(2)
     @pytest.mark.parametrize("title", ["$x^2$ | 5", "Größe\nPlatz", "Пример", "x" * 400])
     def test_any_title_can_be_written(self, tmp_path, title):
         path = preview(hill(steps=4), output=tmp_path / "a.png", size=(400, 250), title=title)

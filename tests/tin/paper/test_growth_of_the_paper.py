@@ -321,7 +321,6 @@ def test_delaunay_has_the_largest_smallest_angle_but_not_the_largest_sum_of_them
 # ------------------------------------------------------------------ removal
 
 
-@pytest.mark.first_cases(1)
 @pytest.mark.parametrize("n", [50, 400])
 def test_removal_lowers_the_candidates_and_changes_no_triangle(n):
     points = random_points(n, 1)
