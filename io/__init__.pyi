@@ -25,6 +25,7 @@ from .reprojection.surfaces import reproject as reproject
 from .reprojection.transformation import LengthUnit as LengthUnit
 from .reprojection.transformation import length_unit as length_unit
 from .reprojection.transformation import transform_points as transform_points
+from .tables.templates import read_superelevation as read_superelevation
 from .tables.templates import read_template as read_template
 from .vector.libraries import to_features as to_features
 from .vector.reading import read_lines as read_lines

@@ -1,4 +1,4 @@
-"""Make the picture of a corridor: a road through the hills of the sample raster.
+"""Make the pictures of corridors: a road through the hills of the sample raster, and sharp bends.
 
 Run ``python docs/gallery/corridor.py [FOLDER]``; needs the extra "plot".
 """
@@ -20,7 +20,7 @@ STATION, REACH = 300.0, 45.0
 
 
 def main(folder: Path = FOLDER) -> None:
-    """Write corridor.png."""
+    """Write corridor.png and corridor_bends.png."""
     whole = ts.triangulate(ts.read(SAMPLES / "jacksboro.tif"))
     middle = whole.points[:, :2].mean(axis=0)
     box = middle + np.array([[-700, -450], [700, -450], [700, 450], [-700, 450]])
@@ -47,6 +47,29 @@ def main(folder: Path = FOLDER) -> None:
     plan.set_title(f"Cut {found['cut'][0]:,.0f} m³, fill {found['fill'][0]:,.0f} m³", fontsize=11)
     _draw_section(section, ground, made, road)
     save(draw(figure, 100), folder / "corridor.png")
+    save(draw(_draw_bends(), 100), folder / "corridor_bends.png")
+
+
+def _draw_bends() -> Figure:
+    """Draw a road that turns back, and a dam around a pond, on inclined ground."""
+    corners = np.array([[0, 0], [120, 0], [120, 90], [0, 90]])
+    ground = ts.triangulate(np.column_stack([corners, 20 + 0.04 * corners[:, 0]]))
+    lane, shoulder = ts.Part("lane", 4, -0.025), ts.Part("shoulder", 1.5, -0.05)
+    road = ts.Template(ts.Side([lane, shoulder], cut_slope=1.5, fill_slope=2))
+    bend = [[15, 25, 24.5], [75, 25, 26.5], [95, 45, 27.3], [75, 60, 28], [25, 52, 25.5]]
+    crest = ts.Template(ts.Side([ts.Part("crest", 2)], cut_slope=1.5, fill_slope=2))
+    pond = [[30, 25, 25.5], [75, 20, 25.5], [95, 45, 25.5], [55, 70, 25.5], [30, 25, 25.5]]
+    figure = Figure(figsize=(10, 4.2), layout="constrained")
+    jobs = (("A road that turns back", bend, road), ("A dam around a pond", pond, crest))
+    for axes, (title, axis, template) in zip(figure.subplots(1, 2), jobs, strict=True):
+        made = ts.corridor(ground, axis, template)
+        surface = (*made.points[:, :2].T, made.triangles, made.points[:, 2])
+        axes.tricontourf(*surface, levels=np.arange(19, 31, 0.5), cmap="terrain")
+        axes.tricontour(*surface, levels=np.arange(19, 31, 0.5), colors="#00000055", linewidths=0.5)
+        _draw_lines(axes, made)
+        axes.set(xlim=(0, 120), ylim=(0, 90), aspect="equal", xticks=[], yticks=[])
+        axes.set_title(title, fontsize=11)
+    return figure
 
 
 def _lay_out(ground: ts.TIN, middle: np.ndarray) -> ts.Alignment:

@@ -31,6 +31,7 @@ from .io import read_points as read_points
 from .io import read_polygons as read_polygons
 from .io import read_raster as read_raster
 from .io import read_rings as read_rings
+from .io import read_superelevation as read_superelevation
 from .io import read_template as read_template
 from .io import read_tin as read_tin
 from .io import read_water as read_water

@@ -21,6 +21,7 @@ _REFUSED = {
     "self": "lies over itself",
     "axis": "There is no room for the curves",
     "bend": "cannot be laid out near station",
+    "end": "side slopes reach an end of the axis",
 }
 """What may be refused, and the sentences."""
 _NAMES = {-1: "left", 1: "right"}
@@ -56,7 +57,16 @@ def generate(rng: np.random.Generator) -> Case:
         "superelevation": float(rng.choice([0.0, 0.0, 0.06])),
         "tolerance": float(rng.choice([0.01, 0.05])),
         "places": rng.uniform(0, 1, (300, 2)).tolist(),
+        "ring": (_draw_ring(rng) + origin).tolist() if rng.random() < 0.25 else None,
     }
+
+
+def _draw_ring(rng: np.random.Generator) -> Any:
+    """Corners of a polygon around the middle of the ground."""
+    count = int(rng.integers(3, 8))
+    angles = np.sort(rng.uniform(0.0, 2.0 * np.pi, count)) * float(rng.choice([-1.0, 1.0]))
+    away = rng.uniform(8.0, 30.0, count)
+    return 0.5 * _SIZE + away[:, None] * np.column_stack([np.cos(angles), np.sin(angles)])
 
 
 def _draw_side(rng: np.random.Generator) -> dict[str, Any]:
@@ -98,6 +108,9 @@ def examine(case: Case) -> str:
         if case["superelevation"]:
             q = case["superelevation"]
             table = [[axis.start, -0.02, -0.02], [middle, q, -q]]
+        if case["ring"]:
+            template[axis.end] = template[axis.start]
+            table = table and [*table, [axis.end, -0.02, -0.02]]
         made = ts.corridor(
             ground, axis, template, superelevation=table, tolerance=case["tolerance"]
         )
@@ -120,6 +133,8 @@ def examine(case: Case) -> str:
 
 def _make_axis(case: Case) -> Any:
     points = np.array(case["points"])
+    if case["ring"]:
+        points = np.array([*case["ring"], case["ring"][0]])
     curves = {} if len(points) < 3 else {"radii": case["radius"]}
     if case["radius"] and len(points) > 2:
         turns = np.abs(np.angle(np.exp(1j * np.diff(np.arctan2(*np.diff(points, axis=0).T)))))
@@ -129,6 +144,8 @@ def _make_axis(case: Case) -> Any:
     middle, half = 0.5 * (axis.start + axis.end), 0.2 * axis.length
     tops = [level, level + rate * axis.length / 2 + bend, level + rate * axis.length]
     stations = (axis.start, middle, axis.end)
+    if case["ring"]:
+        tops[2] = tops[0]
     curve = ("parabola", half, half)
     rows = [
         ts.VerticalPoint(station, top, *(curve if k == 1 else ()))
@@ -143,10 +160,24 @@ class _Sections:
     def __init__(self, case: Case, axis: Any, middle: float) -> None:
         self._case, self.axis, self._middle = case, axis, middle
 
+    def locate(self, xy: Any) -> tuple[Any, Any]:
+        """Return stations and offsets; where a ring closes those of its corner."""
+        table = self.axis.stations_of(xy)
+        station, offset = np.array(table["station"]), np.array(table["offset"])
+        if self._case["ring"]:
+            beyond = np.flatnonzero(np.isnan(station))
+            corner, ring = self.axis.points_at([self.axis.start])[0], self._case["ring"]
+            inside = shapely.contains_xy(shapely.Polygon(ring), xy[beyond])
+            is_left = inside == shapely.LinearRing(ring).is_ccw
+            station[beyond] = self.axis.start
+            offset[beyond] = np.where(is_left, -1.0, 1.0) * np.hypot(*(xy[beyond] - corner).T)
+        return station, offset
+
     def list_lines(self, side: int, station: float, what: str = "parts") -> list[tuple[Any, ...]]:
         """Return name, offset and height above the axis of each line."""
         share = (station - self.axis.start) / (self._middle - self.axis.start)
-        share = min(max(share, 0.0), 1.0)
+        share = min(share, 2.0 - share) if self._case["ring"] else min(share, 1.0)
+        share = max(share, 0.0)
         offset = height = 0.0
         lines = []
         for name, width, slope, rise in self._case[_NAMES[side]][what]:
@@ -208,9 +239,9 @@ def _require_heights(case: Case, ground: Any, made: Any, sections: _Sections, st
     inside = (xy > [bounds.xmin, bounds.ymin]) & (xy < [bounds.xmax, bounds.ymax])
     xy = xy[inside.all(axis=1)]
     own, found = ground.interpolate(xy), made.interpolate(xy)
-    table = axis.stations_of(xy)
+    stations, offsets = sections.locate(xy)
     for k in range(len(xy)):
-        station, offset = float(table["station"][k]), float(table["offset"][k])
+        station, offset = float(stations[k]), float(offsets[k])
         is_ground = abs(found[k] - own[k]) <= 1e-6
         if np.isnan(station):
             beyond = shapely.distance(

@@ -10,6 +10,7 @@ from ..inputs import POLYGONS, Lines, Surface
 from ..options import describe, number, switch, text
 from .base import CommandAlgorithm, Run
 
+_TABLES = "Tables (*.csv *.txt *.json)"
 _RATIO = "Horizontal over vertical: 2 is 2:1."
 
 
@@ -89,8 +90,14 @@ class CorridorAlgorithm(CommandAlgorithm):
 
     def add_outputs(self) -> None:
         """Add the template, the TIN, volumes and counts for models."""
-        template = QgsProcessingParameterFile("TEMPLATE", "Template (CSV)", extension="csv")
-        self.addParameter(describe(template, "A row for each part, from the axis outwards."))
+        what = QgsProcessingParameterFile.File, "", None
+        template = QgsProcessingParameterFile("TEMPLATE", "Template", *what, False, _TABLES)
+        words = "A row for each part, from the axis outwards; templates by station have a station."
+        self.addParameter(describe(template, words))
+        name = "SUPERELEVATION"
+        turns = QgsProcessingParameterFile(name, "Superelevation", *what, True, _TABLES)
+        words = "Station, left and right: slopes of parts that turn."
+        self.addParameter(describe(turns, words, "--superelevation", True))
         self.add_mesh_output("Corridor")
         self.add_numbers({"CUT": "Cut", "FILL": "Fill"})
         self.add_counts()
@@ -105,4 +112,7 @@ class CorridorAlgorithm(CommandAlgorithm):
         axis = run.list_lines(self.lines)[0].partition("=")[2]
         template = self.parameterAsFile(run.parameters, "TEMPLATE", run.context)
         words = [self.verb, ground, axis, template, *options]
+        turns = self.parameterAsFile(run.parameters, "SUPERELEVATION", run.context)
+        if turns:
+            words.append(f"--superelevation={turns}")
         return [*words, *run.list_options(self.options), *run.list_extra()]

@@ -177,11 +177,10 @@ def require_on_ground(
 
 def build_patch(tin: TIN, pad: Pad, slopes: list[Slope]) -> TIN:
     """Return pad and slopes as one surface."""
-    edge, rings, lines = outline_patch(tin, pad, slopes)
-    lines.insert(0, Breakline(edge, name="pad edge", priority=1))
+    edges, rings, lines = outline_patch(tin, pad, slopes)
     return triangulate(
         np.concatenate(rings),
-        breaklines=lines,
+        breaklines=[*(Breakline(one, name="pad edge", priority=1) for one in edges), *lines],
         boundary=rings,
         duplicates="last",
         crs=tin.crs,
@@ -191,23 +190,24 @@ def build_patch(tin: TIN, pad: Pad, slopes: list[Slope]) -> TIN:
 
 def outline_patch(
     tin: TIN, pad: Pad, slopes: list[Slope]
-) -> tuple[Float64Array, list[Float64Array], list[Breakline]]:
-    """Return the edge of a pad, the rings around pad and slopes, and lines where slopes break."""
-    tolerance = measure_tolerance(tin.points)
-    rims = [rim for slope in slopes for rim in slope.find_rim(pad.polygon, tolerance)]
-    edge = _insert(pad, rims, tolerance)
-    rings = _trace_outline(edge, rims, slopes)
-    breaks = [line for slope in slopes for line in slope.find_breaks()]
-    _snap(breaks, np.concatenate([edge, *rims]), tolerance)
-    lines = [Breakline(line, name="slope") for line in breaks if np.ptp(line[:, :2], axis=0).any()]
-    return edge, rings, lines
-
-
-def _insert(pad: Pad, rims: list[Float64Array], tolerance: float) -> Float64Array:
-    """Return the pad's edge with the ends of daylight lines, which are moved onto it."""
+) -> tuple[list[Float64Array], list[Float64Array], list[Breakline]]:
+    """Return the edges of a pad, the rings around pad and slopes, and lines where slopes break."""
     import shapely
 
-    exterior = pad.polygon.exterior
+    tolerance = measure_tolerance(tin.points)
+    rims = [rim for slope in slopes for rim in slope.find_rim(pad.polygon, tolerance)]
+    edges = [_insert(pad, ring, rims, tolerance) for ring in shapely.get_rings(pad.polygon)]
+    rings = _trace_outline(edges, rims, slopes)
+    breaks = [line for slope in slopes for line in slope.find_breaks()]
+    _snap(breaks, np.concatenate([*edges, *rims]), tolerance)
+    lines = [Breakline(line, name="slope") for line in breaks if np.ptp(line[:, :2], axis=0).any()]
+    return edges, rings, lines
+
+
+def _insert(pad: Pad, exterior: Any, rims: list[Float64Array], tolerance: float) -> Float64Array:
+    """Return a ring of the pad with the ends of daylight lines, which are moved onto it."""
+    import shapely
+
     ring = shapely.get_coordinates(exterior)
     stations = {float(exterior.project(shapely.Point(xy))): xy for xy in ring[:-1]}
     for rim in rims:
@@ -227,23 +227,22 @@ def _insert(pad: Pad, rims: list[Float64Array], tolerance: float) -> Float64Arra
 
 
 def _trace_outline(
-    edge: Float64Array, rims: list[Float64Array], slopes: list[Slope]
+    edges: list[Float64Array], rims: list[Float64Array], slopes: list[Slope]
 ) -> list[Float64Array]:
     """Return the rings around pad and slopes."""
     import shapely
 
-    lines = shapely.union_all(shapely.linestrings(edge[:, :2]))
-    work = shapely.union_all([lines, *(shapely.linestrings(rim[:, :2]) for rim in rims)])
+    lines = [shapely.linestrings(line[:, :2]) for line in (*edges, *rims)]
+    work = shapely.union_all(lines)
     faces = shapely.get_parts(shapely.polygonize(shapely.get_parts(work)))
-    pad = shapely.Polygon(edge[:, :2])
-    places = [shapely.point_on_surface(face) for face in faces]
-    kept = [
-        face
-        for face, place in zip(faces, places, strict=True)
-        if pad.contains(place) or any(slope.is_made_at(place) for slope in slopes)
-    ]
-    known = {(x, y): z for x, y, z in np.concatenate([edge, *rims]).tolist()}
-    joined = shapely.coverage_union_all(kept)
+    pad = shapely.Polygon(edges[0][:, :2], [edge[:, :2] for edge in edges[1:]])
+    places = shapely.point_on_surface(faces)
+    shapely.prepare(pad)
+    is_kept = shapely.contains(pad, places)
+    for slope in slopes:
+        is_kept |= slope.are_made(shapely.get_coordinates(places))
+    known = {(x, y): z for x, y, z in np.concatenate([*edges, *rims]).tolist()}
+    joined = shapely.coverage_union_all(faces[is_kept])
     rings = [shapely.get_coordinates(ring) for ring in shapely.get_rings(joined)]
     return [_lift(ring, known, slopes) for ring in rings]
 

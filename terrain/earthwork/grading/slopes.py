@@ -42,10 +42,10 @@ class Slope(NamedTuple):
         chains = join_segments(start[off], end[off])
         return [np.column_stack([xy[chain], self.elevations[chain]]) for chain in chains]
 
-    def is_made_at(self, place: Any) -> bool:
-        """Tell whether the slope is made at a point of shapely."""
-        triangle = int(self.surface.locate([[place.x, place.y]])[0])
-        return triangle >= 0 and bool(self.is_made[triangle])
+    def are_made(self, xy: Float64Array) -> BoolArray:
+        """Tell at which places, (k, 2), the slope is made."""
+        triangle = self.surface.locate(xy)
+        return np.asarray((triangle >= 0) & self.is_made[triangle])
 
     def interpolate(self, place: Float64Array) -> float:
         """Return the elevation of the slope nearest to a place."""

@@ -10,9 +10,9 @@ import numpy as np
 from ....base.checks import as_number
 from ....base.errors import LinesError, OptionError
 from ....base.georeference import agree, require_same_crs
-from ....base.sentences import coordinate
+from ....base.sentences import coordinate, height
 from ...surface import as_features, find_reference
-from ..alignments import Alignment, VerticalAlignment, VerticalPoint
+from ..alignments import Alignment, Element, VerticalAlignment, VerticalPoint
 
 if TYPE_CHECKING:
     from ....base.arrays import Float64Array
@@ -22,6 +22,36 @@ if TYPE_CHECKING:
 
 _APART = 1e-3
 """CRS units: an axis whose ends are nearer closes."""
+_SHARE = 0.382
+"""Of an element, at which an axis that closes is opened: so seldom anything else is there."""
+
+
+class Lap(NamedTuple):
+    """An axis that closes: stations go on behind the last one, and begin within an element."""
+
+    start: float
+    end: float
+
+    @property
+    def length(self) -> float:
+        """Of the whole axis, CRS units."""
+        return self.end - self.start
+
+    def wrap(self, stations: Float64Array) -> Float64Array:
+        """Return stations of the axis as it was given."""
+        return np.where(stations > self.end, stations - self.length, stations)
+
+    def split(self, low: float, high: float) -> list[tuple[float, float]]:
+        """Return a range of stations as one or two of the axis as it was given."""
+        if low < self.end < high:
+            return [(low, self.end), (self.start, high - self.length)]
+        low, high = self.wrap(np.array([low, high])).tolist()
+        return [(low, high) if low <= high else (self.start, high)]
+
+    def repeat(self, stations: Float64Array) -> Float64Array:
+        """Return stations of the axis as it was given, and the same of the next time around."""
+        within = stations[(stations >= self.start) & (stations <= self.end)]
+        return np.concatenate([within, within + self.length])
 
 
 class Axis(NamedTuple):
@@ -36,11 +66,22 @@ class Axis(NamedTuple):
     up: float
     """From elevations, in the unit that was agreed on, to the unit of eastings."""
     notes: tuple[str, ...]
+    lap: Lap | None = None
+    """Of an axis that closes."""
+
+    def wrap(self, stations: Float64Array) -> Float64Array:
+        """Return stations as they are given and told: of an axis that closes within one lap."""
+        return stations if self.lap is None else self.lap.wrap(stations)
 
     def elevations_at(self, stations: Float64Array) -> Float64Array:
         """Return designed elevations in the unit that was agreed on."""
-        found = self.profile.elevations_at(np.clip(stations, *self.span))
+        low, high = self.span if self.lap is None else self.lap
+        found = self.profile.elevations_at(np.clip(self.wrap(stations), low, high))
         return np.asarray(found * self.agreed.factors[1])
+
+    def repeat(self, stations: Float64Array) -> Float64Array:
+        """Return stations that are given, of an axis that closes those of the next lap as well."""
+        return stations if self.lap is None else self.lap.repeat(stations)
 
 
 def read_axis(tin: TIN, given: Any, vertical: str | None, start: Any, end: Any) -> Axis:
@@ -60,15 +101,55 @@ def read_axis(tin: TIN, given: Any, vertical: str | None, start: Any, end: Any) 
         raise LinesError(
             "The alignment has no vertical alignment: a corridor needs designed elevations."
         )
-    ends = alignment.points_at([alignment.start, alignment.end])
-    if np.hypot(*(ends[1] - ends[0])) <= _APART:
-        raise LinesError("The axis closes: a corridor needs a start and an end, so cut it in two.")
     profile = alignment.find_vertical(vertical)
     span, short = _find_span(alignment, profile, start, end)
+    lap = _find_lap(alignment, profile, span)
     agreed = agree((tin, alignment), ("the ground", "the axis"))
     if agreed.factors[0] != 1.0 or agreed.elevation_unit != tin.elevation_unit:
         up = agreed.up
-    return Axis(alignment, profile, span, agreed, up, (*alignment.notes, *notes, *short))
+    told = (*alignment.notes, *notes, *short)
+    if lap is not None:
+        alignment = _open(alignment)
+        span = alignment.start, alignment.end
+    return Axis(alignment, profile, span, agreed, up, told, lap)
+
+
+def _find_lap(alignment: Alignment, profile: Profile, span: tuple[float, float]) -> Lap | None:
+    """Return the stations of an axis that closes and is built as a whole, or None.
+
+    Raises LinesError if its elevations do not close.
+    """
+    lap = Lap(alignment.start, alignment.end)
+    first, last = alignment.points_at(lap)
+    is_whole = np.abs(np.subtract(span, lap)).max() <= alignment.rounding
+    if not is_whole or np.hypot(*(last - first)) > _APART:
+        return None
+    step = float(np.ptp(profile.elevations_at(np.array(span))))
+    if step > _APART:
+        raise LinesError(
+            f"The axis closes, but its elevations at the first and the last station differ by "
+            f"{height(step)}: they must be the same."
+        )
+    return lap
+
+
+def _open(alignment: Alignment) -> Alignment:
+    """Return an axis that closes from within a line or an arc on, where its tangent goes on."""
+    elements = list(alignment.elements)
+    lengths = [one.length if one.kind in ("line", "arc") else 0.0 for one in elements]
+    chosen = int(np.argmax(lengths))
+    if not lengths[chosen]:
+        raise LinesError("The axis closes and has neither a line nor an arc: one is needed.")
+    cut = elements[chosen]
+    along = _SHARE * cut.length
+    curved = cut.start_curvature, cut.end_curvature
+    place, direction = cut.places([along])[0], float(cut.directions([along])[0])
+    x, y = place.tolist()
+    after = Element(cut.kind, (x, y), direction, cut.length - along, *curved)
+    before = Element(cut.kind, cut.start, cut.direction, along, *curved)
+    turned = [after, *elements[chosen + 1 :], *elements[:chosen], before]
+    begin = alignment.start + sum(one.length for one in elements[:chosen]) + along
+    return replace(alignment, elements=turned, start=begin, equations=(), verticals=())
 
 
 def _follow_line(given: Any) -> Alignment:

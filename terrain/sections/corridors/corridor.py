@@ -82,7 +82,8 @@ def corridor(
         If an option is no such value, templates have other parts than the first, or stations are
         too many.
     LinesError
-        If the axis is no line, has no elevations or closes, or the corridor lies over itself.
+        If the axis is no line, has no elevations or crosses itself; if it closes, and elevations or
+        cross section do not; if it ends in the side slopes of another stretch.
     PointsError
         If the corridor lies off the ground, or the ground ends before a slope meets it.
     CrsError
@@ -93,7 +94,9 @@ def corridor(
     Each place has the section of the station that is nearest to it, as
     :meth:`tinsmith.Alignment.stations_of` finds it. So where a bend is sharper than the template
     is wide, sections are cut off where those of both stretches are as near: of the two elevations
-    there the lower counts. Around the outer side of a bend without a curve lines are circles.
+    there the lower counts, and of a part and a side slope that of the part. Around the outer side
+    of a bend without a curve lines are circles. An axis whose ends are nearer than 0.001 CRS units
+    closes: its corridor has no ends.
 
     A side slope is a cut where the ground is higher than the last part, and a fill where it is
     lower. At both ends the corridor ends in a vertical face, whose edges are 0.001 CRS units
@@ -117,7 +120,7 @@ def corridor(
     bound = as_length("tolerance", tolerance)
     step = None if interval is None else as_length("interval", interval)
     road = read_axis(tin, axis, vertical, start, end)
-    design = Design(template, superelevation, road.up)
+    design = Design(template, superelevation, road)
     area = find_area(tin)
     layouts = Layouts(tin, area, road, design, bound, step)
     layout = layouts.find(Progress(done.stage(0.0, 0.6)))

@@ -8,14 +8,18 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from ....base.checks import as_floats, as_number
-from ....base.errors import OptionError
+from ....base.errors import LinesError, OptionError
 from .templates import STEEPEST, STEEPNESS, Template
 
 if TYPE_CHECKING:
     from ....base.arrays import Float64Array
+    from .axis import Axis
     from .templates import Side
 
 SIDES = {-1: "left", 1: "right"}
+KINDS = ("cut", "fill")
+_ROUNDING = 1e-9
+"""Offsets and rises that differ by less are the same."""
 
 
 class Lay(NamedTuple):
@@ -30,10 +34,10 @@ class Lay(NamedTuple):
 class Design:
     """Cross sections by station.
 
-    ``up`` is the factor from elevations to the unit of eastings.
+    Raises OptionError, and LinesError if the axis closes, and the section does not.
     """
 
-    def __init__(self, templates: Any, superelevation: Any, up: float) -> None:
+    def __init__(self, templates: Any, superelevation: Any, road: Axis) -> None:
         given = templates if isinstance(templates, Mapping) else {0.0: templates}
         if not given or not all(isinstance(one, Template) for one in given.values()):
             raise OptionError("template", templates, "a Template, or templates by their stations")
@@ -44,9 +48,11 @@ class Design:
             if _list_names(one) != _list_names(self._templates[0]):
                 allowed = f"the parts of the first one: {_list_names(self._templates[0])}"
                 raise OptionError("parts of a template", _list_names(one), allowed)
-        self._up = up
+        self._up, self._road = road.up, road
         self._turn = _read_superelevation(superelevation)
         self._require_ditches()
+        if road.lap is not None:
+            self._require_closed(np.array(road.lap))
 
     def list_names(self, side: int, *, ditch: bool = False) -> list[str]:
         """Return the names of the parts of a side."""
@@ -56,22 +62,24 @@ class Design:
     @property
     def changes(self) -> Float64Array:
         """Stations where something begins to change, or ends to."""
-        return np.union1d(self.stations, self._turn[:, 0])
+        given = np.union1d(self.stations, self._turn[:, 0])
+        lap = self._road.lap
+        return given if lap is None else np.unique(lap.repeat(np.union1d(given, lap)))
 
     def lay(self, side: int, stations: Float64Array) -> Lay:
         """Return the lines of the parts, the axis among them."""
-        widths, slopes, rises = self._measure(side, stations, "parts")
-        return self._add_up(widths, slopes, rises)
+        return self._add_up(*self._measure(side, self._road.wrap(stations), "parts"))
 
     def lay_ditch(self, side: int, stations: Float64Array) -> Lay:
         """Return the lines of the ditch from the last part on."""
-        return self._add_up(*self._measure(side, stations, "ditch"))
+        return self._add_up(*self._measure(side, self._road.wrap(stations), "ditch"))
 
     def find_rates(self, side: int, stations: Float64Array, kind: str) -> Float64Array:
         """Return the rise of a side slope, "cut" or "fill", for a unit along."""
         ratios = [getattr(one, f"{kind}_slope") for one in self._list_sides(side)]
         sign = 1.0 if kind == "cut" else -1.0
-        return np.asarray(sign / (np.interp(stations, self.stations, ratios) * self._up))
+        ratio = np.interp(self._road.wrap(stations), self.stations, ratios)
+        return np.asarray(sign / (ratio * self._up))
 
     def count_steps(self, tolerance: float, far: float) -> list[tuple[float, float, int]]:
         """Return intervals of stations with the number of parts they are cut into.
@@ -82,16 +90,16 @@ class Design:
         at = self.changes
         found = []
         for begin, end in zip(at[:-1].tolist(), at[1:].tolist(), strict=True):
-            most = 1.0
+            most, ends = 1.0, self._road.wrap(np.array([begin, end]))
             for side in SIDES:
                 for what in ("parts", "ditch"):
-                    widths, slopes, _ = self._measure(side, np.array([begin, end]), what)
+                    widths, slopes, _ = self._measure(side, ends, what)
                     turned = np.abs(np.diff(slopes, axis=0))[0]
                     bent = float((np.abs(np.diff(widths, axis=0))[0] * turned).sum())
                     twist = float((widths.max(axis=0) * turned).sum())
                     most = max(most, np.sqrt(bent / (2.0 * tolerance)), twist / (2.0 * tolerance))
                 for kind in ("cut", "fill"):
-                    rates = self.find_rates(side, np.array([begin, end]), kind) * self._up
+                    rates = self.find_rates(side, ends, kind) * self._up
                     most = max(most, far * abs(float(rates[1] - rates[0])) / (2.0 * tolerance))
             found.append((begin, end, int(np.ceil(most))))
         return found
@@ -133,6 +141,17 @@ class Design:
         offsets = np.cumsum(np.hstack([start, widths]), axis=1)
         heights = np.cumsum(np.hstack([start, widths * slopes / self._up + rises]), axis=1)
         return Lay(offsets, heights)
+
+    def _require_closed(self, ends: Float64Array) -> None:
+        """Refuse a section that is another at the first than at the last station."""
+        found = [self.find_rates(side, ends, kind)[:, None] for side in SIDES for kind in KINDS]
+        for side in SIDES:
+            found += [*self.lay(side, ends), *self.lay_ditch(side, ends)]
+        if any(np.ptp(one, axis=0).max(initial=0.0) > _ROUNDING for one in found):
+            raise LinesError(
+                "The axis closes, but its cross section at the first station is another than at "
+                "the last one: they must be the same."
+            )
 
     def _require_ditches(self) -> None:
         """Refuse ditches that fall more steeply than a fill: below both would be the ground."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from functools import partial
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -56,9 +57,18 @@ class Layout(NamedTuple):
         """Tell where it was cut off because another station is nearer."""
         unit = road.agreed.elevation_unit
         symbol = "" if unit is None else f" {unit.symbol}"
-        notes = _describe_fold(self.bed.fold, lambda _: True, symbol)
+        folds: list[Any] = [
+            (self.bed.fold, lambda xy: np.ones(len(xy), bool), "the template reaches into that")
+        ]
         for skirt, slope in zip(self.skirts, self.slopes, strict=True):
-            notes += _describe_fold(skirt.fold, slope.is_made_at, symbol, "side slopes meet those")
+            folds.append((skirt.fold, slope.are_made, "side slopes meet those"))
+        notes = []
+        for fold, are_made, what in folds:
+            ranges, step = _find_ranges(fold, are_made)
+            if road.lap is not None:
+                ranges = [one for low, high in ranges for one in road.lap.split(low, high)]
+            if ranges:
+                notes.append(_describe_fold(_join_ranges(ranges), what, step, symbol))
         return list(dict.fromkeys(notes))
 
 
@@ -95,11 +105,33 @@ class Layouts:
             layout, open_ends = self._lay(min(far, max(most.values())))
             for kind, ends in open_ends.items():
                 near = lie_on(self._area, ends, measure_tolerance(self.ground.points))
+                self._require_far(ends[~near], min(far, max(most.values())))
                 require_ground(ends if far >= most[kind] else ends[near], _SIGNS[kind])
             if not any(map(len, open_ends.values())):
                 break
             far *= 2.0
         return layout
+
+    def _require_far(self, places: Float64Array, far: float) -> None:
+        """Refuse side slopes that end sooner than at a distance: beyond an end of the axis.
+
+        Raises LinesError.
+        """
+        if not len(places):
+            return
+        table = self._road.alignment.stations_of(places)
+        widest = np.full(len(places), np.inf)
+        for side in (-1, 1):
+            own = np.flatnonzero((table["offset"] < 0.0) == (side < 0))
+            station = np.nan_to_num(table["station"][own], nan=self._road.span[0])
+            widest[own] = Reach(self._design, far).measure(side, station)[:, -1]
+        is_far = np.abs(table["offset"]) >= widest - 2.0 * self._tolerance
+        if not is_far.all():
+            x, y = places[~is_far][0].tolist()
+            raise LinesError(
+                f"At {coordinate(x)} {coordinate(y)} side slopes reach an end of the axis that is "
+                "as near as their own stretch: the axis has to end farther from it, or sooner."
+            )
 
     def _estimate_reach(self) -> tuple[float, dict[str, float]]:
         """Return how far slopes go on ground as at their feet, and how far they can on any."""
@@ -129,13 +161,13 @@ class Layouts:
     def _lay(self, far: float) -> tuple[Layout, dict[str, Float64Array]]:
         reach = Reach(self._design, far)
         stations = self._choose_stations(reach)
-        rays = lay_rays(self._road.alignment, reach, stations, self._tolerance)
+        rays = lay_rays(self._road, reach, stations, self._tolerance)
         bed = self._build_bed(rays)
         ends = self._find_ends(reach)
         skirts, slopes, found = [], [], {}
         tolerance = measure_tolerance(self.ground.points)
         for kind, sign in _SIGNS.items():
-            skirt = self._build_skirt(rays, kind, far)
+            skirt = self._build_skirt(rays, kind, reach, bed)
             if skirt is None:
                 raise LinesError("The corridor has no side slopes: its axis turns too sharply.")
             slope, open_ends = meet_ground(self.ground, skirt.tin, bed.area, -sign)
@@ -143,9 +175,8 @@ class Layouts:
             slopes.append(slope)
             import shapely
 
-            is_end = shapely.dwithin(
-                shapely.multilinestrings(ends), shapely.points(open_ends), 64.0 * tolerance
-            )
+            ended = shapely.multilinestrings(ends) if ends else shapely.MultiLineString()
+            is_end = shapely.dwithin(ended, shapely.points(open_ends), 64.0 * tolerance)
             found[kind] = open_ends[~is_end]
         return Layout(bed, skirts, slopes, ends), found
 
@@ -155,10 +186,8 @@ class Layouts:
         widest = max(float(reach.measure(side, ends)[:, -1].max()) for side in (-1, 1))
         up = road.up * road.agreed.factors[1]
         return choose_stations(
-            road.alignment,
-            road.profile,
+            road,
             self._design,
-            span=road.span,
             widest=widest,
             far=reach.far,
             tolerance=(self._tolerance, self._tolerance / up),
@@ -167,7 +196,7 @@ class Layouts:
 
     def _find_ends(self, reach: Reach) -> list[Float64Array]:
         found = []
-        for station in self._road.span:
+        for station in self._road.span if self._road.lap is None else ():
             at = np.array([station])
             offsets = [side * float(reach.measure(side, at)[0, -1]) for side in (-1, 1)]
             places = [self._road.alignment.points_at(at, offset=one)[0] for one in offsets]
@@ -181,8 +210,11 @@ class Layouts:
         lays = {s: Lay(one.offsets, one.rises + axis[:, None]) for s, one in lays.items()}
         names = {side: ["", *self._design.list_names(side)] for side in (-1, 1)}
         names[1][0] = "axis"
-        bed = build_sheet(rays, Rows(names, lays), self._hold_bed, is_bed=True)
-        if bed is None or bed.area.geom_type != "Polygon" or len(bed.area.interiors):
+        import shapely
+
+        bed = build_sheet(rays, Rows(names, lays), self._hold, self._road)
+        path = shapely.linestrings(rays.origins[rays.sides == 1])
+        if bed is None or bed.area.geom_type != "Polygon" or not shapely.is_simple(path):
             raise LinesError(
                 "The corridor lies over itself: stretches of the axis that are far apart along it "
                 "are nearer to each other than the template is wide."
@@ -190,33 +222,27 @@ class Layouts:
         require_on_ground(self._area, bed.area, "The corridor lies off")
         return bed
 
-    def _build_skirt(self, rays: Rays, kind: str, far: float) -> Sheet | None:
+    def _build_skirt(self, rays: Rays, kind: str, reach: Reach, bed: Sheet) -> Sheet | None:
         """Return the side slopes of cuts or fills, whether or not they are made."""
         axis = self._road.elevations_at(rays.stations)
         names, lays = {}, {}
         for side in (-1, 1):
-            bed = self._design.lay(side, rays.stations)
-            first = bed.offsets[:, -1:], bed.rises[:, -1:] + axis[:, None]
+            own = self._design.lay(side, rays.stations)
+            first = own.offsets[:, -1:], own.rises[:, -1:] + axis[:, None]
             ditch = self._design.lay_ditch(side, rays.stations)
             own = ditch if kind == "cut" else Lay(ditch.offsets[:, :1], ditch.rises[:, :1])
             offsets, heights = first[0] + own.offsets, first[1] + own.rises
-            end = first[0] + ditch.offsets[:, -1:] + far
+            end = first[0] + ditch.offsets[:, -1:] + reach.far
             rates = self._design.find_rates(side, rays.stations, kind)[:, None]
             top = heights[:, -1:] + (end - offsets[:, -1:]) * rates
             lays[side] = Lay(np.hstack([offsets, end]), np.hstack([heights, top]))
             parts = self._design.list_names(side, ditch=True) if kind == "cut" else []
             names[side] = ["", *parts, ""]
-        return build_sheet(rays, Rows(names, lays), self._hold_skirt, is_bed=False)
+        is_own = partial(self._hold, reach=reach)
+        return build_sheet(rays, Rows(names, lays), is_own, self._road, bed=bed)
 
-    def _hold_bed(self, places: Float64Array) -> BoolArray:
-        return self._compare(places, lambda offset, hinge: offset <= hinge)
-
-    def _hold_skirt(self, places: Float64Array) -> BoolArray:
-        return self._compare(places, lambda offset, hinge: offset >= hinge)
-
-    def _compare(
-        self, places: Float64Array, test: Callable[[Float64Array, Float64Array], BoolArray]
-    ) -> BoolArray:
+    def _hold(self, places: Float64Array, reach: Reach | None = None) -> BoolArray:
+        """Whether places are those of the bed, or of side slopes as far as they may go."""
         table = self._road.alignment.stations_of(places)
         station, offset = table["station"], table["offset"]
         low, high = self._road.span
@@ -224,44 +250,47 @@ class Layouts:
         held = np.zeros(len(places), bool)
         for side in (-1, 1):
             own = np.flatnonzero(known & ((offset < 0.0) == (side < 0)))
-            hinge = self._design.lay(side, station[own]).offsets[:, -1]
-            held[own] = test(np.abs(offset[own]), hinge)
+            hinge, away = self._design.lay(side, station[own]).offsets[:, -1], np.abs(offset[own])
+            if reach is None:
+                held[own] = away <= hinge
+            else:
+                held[own] = (away >= hinge) & (away <= reach.measure(side, station[own])[:, -1])
         return held
 
 
-def _describe_fold(
-    fold: Fold,
-    is_made_at: Callable[[Any], bool],
-    symbol: str,
-    what: str = "the template reaches into that",
-) -> list[str]:
-    """Say at which stations a sheet was cut off."""
-    import shapely
-
+def _find_ranges(
+    fold: Fold, are_made: Callable[[Float64Array], BoolArray]
+) -> tuple[list[tuple[float, float]], float]:
+    """Return the stations at which a sheet was cut off, and by how much both sides differ."""
     shares = np.linspace(0.0, 1.0, _CHECKS)
+    first, last = fold.places[:, :1], fold.places[:, 1:]
+    places = first + shares[:, None] * (last - first)
+    is_made = are_made(places.reshape(-1, 2)).reshape(-1, _CHECKS)
     ranges, step = [], 0.0
-    for stations, ends, own in zip(fold.stations, fold.places, fold.steps, strict=True):
-        places = shapely.points(ends[0] + shares[:, None] * (ends[1] - ends[0]))
-        made = shares[[is_made_at(place) for place in places]]
+    for stations, own_made, own in zip(fold.stations, is_made, fold.steps, strict=True):
+        made = shares[own_made]
         if len(made):
             found = stations[0] + made[[0, -1]] * (stations[1] - stations[0])
             ranges.append((float(found.min()), float(found.max())))
             step = max(step, float(own))
-    if not ranges:
-        return []
+    return ranges, step
+
+
+def _describe_fold(ranges: list[tuple[float, float]], what: str, step: float, symbol: str) -> str:
+    """Say at which stations a sheet was cut off."""
     joined = [
         f"{coordinate(math.floor(low * 1e3) / 1e3)} to {coordinate(math.ceil(high * 1e3) / 1e3)}"
-        for low, high in _join_ranges(ranges)
+        for low, high in ranges
     ]
     listed = ", ".join(joined[:_SHOWN])
     more = f" and {counted(len(joined) - _SHOWN, 'more range')}" if len(joined) > _SHOWN else ""
     differ = (
         f", the lower of elevations that differ by up to {step:.4g}{symbol}" if step > 1e-6 else ""
     )
-    return [
+    return (
         f"At stations {listed}{more} {what} of other stations, and was cut off where both are as "
         f"near{differ}."
-    ]
+    )
 
 
 def _join_ranges(ranges: list[tuple[float, float]]) -> list[tuple[float, float]]:

@@ -46,12 +46,13 @@ def build_patch(ground: TIN, layout: Layout, road: Axis, tin: TIN, most: float) 
     Raises LinesError if its outline is off the ground by more than ``most``.
     """
     bed: Any = _Bed(layout.bed)
-    edge, rings, lines = outline_patch(ground, bed, layout.slopes)
+    edges, rings, lines = outline_patch(ground, bed, layout.slopes)
     faces: list[Breakline] = []
     for line, way in _list_ends(layout, road):
         near = 64.0 * measure_tolerance(ground.points)
         rings = [_add_faces(ring, line, way, ground, tolerance=near, faces=faces) for ring in rings]
-    made = [*layout.bed.lines, Breakline(edge, name="hinge", priority=1), *lines, *faces]
+    hinges = [Breakline(edge, name="hinge", priority=1) for edge in edges]
+    made = [*layout.bed.lines, *hinges, *lines, *faces]
     patch = triangulate(
         np.concatenate(rings),
         breaklines=made,
@@ -75,7 +76,8 @@ def _require_met(ground: TIN, patch: TIN, road: Axis, most: float) -> None:
     if apart[worst] <= most:
         return
     x, y = outline[worst, :2].tolist()
-    found = float(road.alignment.stations_of(outline[worst : worst + 1, :2])["station"][0])
+    station = road.alignment.stations_of(outline[worst : worst + 1, :2])["station"]
+    found = float(road.wrap(station)[0])
     where = "" if np.isnan(found) else f"At station {coordinate(found)} "
     raise LinesError(
         f"{where}{'the' if where else 'The'} corridor does not meet the ground at {coordinate(x)} "
@@ -84,9 +86,14 @@ def _require_met(ground: TIN, patch: TIN, road: Axis, most: float) -> None:
 
 
 def _list_ends(layout: Layout, road: Axis) -> list[tuple[Any, Float64Array]]:
-    """Return both ends as lines of shapely and the ways out; on one line they are one."""
+    """Return both ends as lines of shapely and the ways out; on one line they are one.
+
+    An axis that closes has none.
+    """
     import shapely
 
+    if not layout.ends:
+        return []
     tangents = road.alignment.tangents_at(np.array(road.span), mean=True)
     ways = [-tangents[0], tangents[1]]
     first, last = layout.ends

@@ -49,8 +49,9 @@ def require_as_designed(
         excess = errors - (allowed + step + _ROUNDING)
         if (excess > 0.0).any():
             worst = int(np.argmax(excess))
+            where = coordinate(float(road.wrap(at)[worst]))
             raise LinesError(
-                f"The corridor cannot be laid out near station {coordinate(float(at[worst]))}: the "
+                f"The corridor cannot be laid out near station {where}: the "
                 "bend is too sharp for the template, or turns without a curve (faces would be off "
                 f"by {height(float(errors[worst]))}). Give the axis a wider curve there."
             )

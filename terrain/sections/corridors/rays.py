@@ -10,7 +10,7 @@ from ....base.georeference import find_axes
 
 if TYPE_CHECKING:
     from ....base.arrays import BoolArray, Float64Array, Int64Array
-    from ..alignments import Alignment
+    from .axis import Axis
     from .designs import Design
 
 NEAR = 1e-4
@@ -24,6 +24,9 @@ _KINK = 1e-6
 
 _HALVINGS = 44
 """Of a length until it is known to roundings."""
+
+_MOST_STEPS = 64
+"""Until a distance is known to roundings."""
 
 
 class Rays(NamedTuple):
@@ -72,25 +75,27 @@ class Reach(NamedTuple):
         return np.hstack([bed, ditch[:, 1:], ditch[:, -1:] + self.far])
 
 
-def lay_rays(axis: Alignment, reach: Reach, stations: Float64Array, tolerance: float) -> Rays:
+def lay_rays(road: Axis, reach: Reach, stations: Float64Array, tolerance: float) -> Rays:
     """Return rays at stations, and at those where lines meet what belongs to other stations.
 
     Around the outer side of a bend without a curve rays are so near to each other that circles
     about it lie within the tolerance of chords.
     """
-    return _Laying(axis, reach, tolerance).lay(stations)
+    return _Laying(road, reach, tolerance).lay(stations)
 
 
 class _Laying:
-    def __init__(self, axis: Alignment, reach: Reach, tolerance: float) -> None:
+    def __init__(self, road: Axis, reach: Reach, tolerance: float) -> None:
+        axis = road.alignment
         self._axis, self._reach, self._tolerance = axis, reach, tolerance
+        self._is_closed = road.lap is not None
         self._hand = -1.0 if find_axes(axis.crs).are_mirrored else 1.0
         size = np.abs(axis.points_at([axis.start, axis.end])).max() + axis.length
         self._slack = _ROUNDINGS * float(np.spacing(size))
         self._kinks = self._find_kinks()
 
     def lay(self, stations: Float64Array) -> Rays:
-        rays = self._match(self._lay_first(stations))
+        rays = self._match(self._lay_first(self._separate_kinks(stations)))
         count = len(rays.sides)
         for _ in range(_HALVINGS):
             between = self._find_between(rays)
@@ -101,7 +106,16 @@ class _Laying:
 
     def _match(self, rays: Rays) -> Rays:
         """Return rays with those at crossings, and those of other stations to their ends."""
-        return self._add_partners(rays.join(self._find_crossings(rays)))
+        matched = self._add_partners(rays.join(self._find_crossings(rays)))
+        return self._close(matched) if self._is_closed else matched
+
+    def _close(self, rays: Rays) -> Rays:
+        """Return rays of which those at the last station are those at the first, where they are."""
+        start, end = self._axis.start, self._axis.end
+        first = rays.stations <= start
+        again = rays.take(first)
+        again = again._replace(stations=np.full(len(again.stations), end))
+        return rays.take(rays.stations < end).join(again)
 
     def _find_between(self, rays: Rays) -> Rays:
         """Return the rays half-way between cut ones whose ends are chords of a curve."""
@@ -180,6 +194,12 @@ class _Laying:
         none = Rays(*(column[:0] for column in columns))
         return Rays(*columns).join(none)
 
+    def _separate_kinks(self, stations: Float64Array) -> Float64Array:
+        """Return stations with one between bends that follow each other: there rays have ends."""
+        is_kink = np.isin(stations, list(self._kinks))
+        first = np.flatnonzero(is_kink[:-1] & is_kink[1:])
+        return np.union1d(stations, 0.5 * (stations[first] + stations[first + 1]))
+
     def _list_angles(self, station: float, side: int) -> Float64Array:
         """Return the angles of rays at a bend; on its inner side one, which has no length."""
         turn = abs(self._kinks[station][1])
@@ -198,22 +218,62 @@ class _Laying:
 
     def _is_own(self, places: Float64Array, distances: Float64Array) -> BoolArray:
         """Whether no other station is nearer to places than that at a distance."""
-        offsets = np.abs(self._axis.stations_of(places)["offset"])
-        return np.asarray(offsets >= distances - self._slack)  # NaN, beyond the ends: nobody's
+        return self._compare(places, distances)[0]
+
+    def _compare(
+        self, places: Float64Array, distances: Float64Array
+    ) -> tuple[BoolArray, Float64Array]:
+        """Return whether no other station is nearer than that at a distance, and the nearest."""
+        table = self._axis.stations_of(places)
+        is_own = np.abs(table["offset"]) >= distances - self._slack
+        return np.asarray(is_own), table["station"]  # NaN, beyond the ends: nobody's
 
     def _find_limits(
         self, origins: Float64Array, ways: Float64Array, caps: Float64Array
     ) -> Float64Array:
+        """Return the distances from which other stations are nearer, at most those of caps.
+
+        A circle that touches the axis at an origin, and goes through the station that is nearest to
+        a place beyond, has the next place as its centre (Ma, Bae and Choi 2012); what rounding
+        leaves open is halved.
+        """
         limits = caps.copy()
-        own = self._is_own(origins + caps[:, None] * ways, caps) | (caps == 0.0)
-        cut = np.flatnonzero(~own)
-        low, high = np.zeros(len(cut)), caps[cut]
-        for _ in range(_HALVINGS if len(cut) else 0):
-            middle = 0.5 * (low + high)
-            inside = self._is_own(origins[cut] + middle[:, None] * ways[cut], middle)
-            low, high = np.where(inside, middle, low), np.where(inside, high, middle)
-        limits[cut] = low
+        is_own, station = self._compare(origins + caps[:, None] * ways, caps)
+        at = np.flatnonzero(~is_own & (caps != 0.0))
+        low, high = np.zeros(len(at)), caps[at]
+        guess, slack = self._shrink(origins[at], ways[at], station[at], high)
+        high = np.fmin(high, guess + slack)
+        for _ in range(_MOST_STEPS):
+            if not len(at):
+                break
+            probe = guess - slack
+            probe = np.where((probe > low) & (probe < high), probe, 0.5 * (low + high))
+            places = origins[at] + probe[:, None] * ways[at]
+            is_own, station = self._compare(places, probe)
+            low, high = np.where(is_own, probe, low), np.where(is_own, high, probe)
+            guess, slack = self._shrink(origins[at], ways[at], station, probe)
+            guess[is_own] = np.nan
+            high = np.fmin(high, guess + slack)
+            limits[at] = low
+            goes_on = high - low > 0.25 * self._slack
+            at, low, high = at[goes_on], low[goes_on], high[goes_on]
+            guess, slack = guess[goes_on], slack[goes_on]
         return limits
+
+    def _shrink(
+        self, origins: Float64Array, ways: Float64Array, stations: Float64Array, at: Float64Array
+    ) -> tuple[Float64Array, Float64Array]:
+        """Return distances of places as near to stations, NaN if unknown, and their roundings."""
+        guess, error = np.full(len(at), np.nan), np.full(len(at), np.nan)
+        known = np.flatnonzero(~np.isnan(stations))
+        chord = self._axis.points_at(stations[known]) - origins[known]
+        square, ahead = (chord * chord).sum(axis=1), (chord * ways[known]).sum(axis=1)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            found = np.where(ahead > 0.0, 0.5 * square / ahead, np.nan)
+            error[known] = self._slack * (1.0 + 4.0 * at[known] ** 2 / square)
+        guess[known] = found
+        guess[error > 0.25 * at] = np.nan
+        return guess, error
 
     def _find_crossings(self, rays: Rays) -> Rays:
         """Return the rays at which lines meet what is nearer to other stations."""
@@ -306,6 +366,9 @@ class _Laying:
         cut, station, offset = cut[known], station[known], offset[known]
         ends = rays.ends[cut]
         station = self._square(station, ends)
+        if self._is_closed:
+            at_end = station >= self._axis.end - self._axis.rounding
+            station = np.where(at_end, self._axis.start, station)
         for kink in self._kinks:
             station[np.abs(station - kink) <= self._axis.rounding] = kink
         origins = self._axis.points_at(station)

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from ....base.arrays import BoolArray, Float64Array, Int64Array
+    from .axis import Axis
     from .designs import Lay
     from .rays import Rays
 
@@ -62,18 +63,26 @@ class Sheet(NamedTuple):
 
 
 def build_sheet(
-    rays: Rays, rows: Rows, is_own: Callable[[Float64Array], BoolArray], *, is_bed: bool
+    rays: Rays,
+    rows: Rows,
+    is_own: Callable[[Float64Array], BoolArray],
+    road: Axis,
+    *,
+    bed: Sheet | None = None,
 ) -> Sheet | None:
     """Return the surface of lines, or None where it covers nothing.
 
-    A bed lies on both sides of its first line, the axis, other sheets beyond theirs. ``is_own``
-    tells which places belong to it. Raises LinesError if it cannot be closed.
+    A bed lies on both sides of its first line, the axis, side slopes beyond the edge of a ``bed``,
+    which they meet. ``is_own`` tells which places belong to it. Raises LinesError if it cannot be
+    closed.
     """
     import shapely
 
-    mesh = _Vertices(rays, rows)
-    outline = mesh.list_outer(rays) + mesh.list_ends(rays)
-    if not is_bed:
+    mesh = _Vertices(rays, rows, np.empty((0, 3)) if bed is None else bed.tin.points)
+    outline = mesh.list_outer(rays)
+    if road.lap is None:
+        outline += mesh.list_ends(rays)
+    if bed is not None:
         outline += mesh.list_inner(rays)
     outline += mesh.folds
     pairs = np.unique(np.sort(np.array(outline, np.int64).reshape(-1, 2), axis=1), axis=0)
@@ -94,8 +103,10 @@ def build_sheet(
     except shapely.GEOSException:  # faces lie over each other
         first = shapely.STRtree(lines).query(lines, predicate="crosses")[0]
         crossed = lines[first[0]] if len(first) else lines[0]
-        raise _explain_open(rays, shapely.get_coordinates(crossed)[0]) from None
-    mesh.require_covered(rays, area)
+        raise _explain_open(rays, road, shapely.get_coordinates(crossed)[0]) from None
+    lost = mesh.find_lost(rays, area)
+    if len(lost):
+        raise _explain_open(rays, road, lost[0])
     heights = {(x, y): z for x, y, z in points.tolist()}
     breaks = mesh.list_breaklines(rays, rows)
     rings: dict[str, Any] = arrange_rings(area, heights)
@@ -107,7 +118,7 @@ def build_sheet(
 class _Vertices:
     """The vertices at which lines cross rays, those that are near to each other as one."""
 
-    def __init__(self, rays: Rays, rows: Rows) -> None:
+    def __init__(self, rays: Rays, rows: Rows, bed: Float64Array) -> None:
         xyz, owner, column, is_cut = _place_vertices(rays, rows)
         number = _merge(xyz[:, :2])
         lowest = xyz[:, 2].copy()
@@ -117,6 +128,7 @@ class _Vertices:
         self.points: Float64Array = np.column_stack([xyz[:, :2], lowest])
         self.used = np.unique(number)
         self._steps = highest - lowest
+        self._join(bed)
         self._lasts = {side: rows.lays[side].offsets.shape[1] - 1 for side in (-1, 1)}
         self._grid = np.full((len(rays.sides), max(self._lasts.values()) + 1), -1)
         self._grid[owner[~is_cut], column[~is_cut]] = number[~is_cut]
@@ -125,8 +137,20 @@ class _Vertices:
         self._inner = np.full(len(rays.sides), -1)
         self._fold_rays = self._find_folds(rays)
         ends = [(self._find_last(a), self._find_last(b)) for a, b in self._fold_rays.tolist()]
-        self.folds: list[tuple[int, int]] = ends
+        self._fold_ends: list[tuple[int, int]] = ends
+        self.folds = [(a, b) for a, b in ends if a != b]
         self._add_inner(rays, rows)
+
+    def _join(self, bed: Float64Array) -> None:
+        """Move vertices onto those of a bed that are there but for rounding."""
+        import shapely
+
+        tree = shapely.STRtree(shapely.points(bed[:, :2]))
+        places = shapely.points(self.points[:, :2])
+        own, other = tree.query_nearest(places, max_distance=NEAR, all_matches=False)
+        steps = np.abs(bed[other, 2] - self.points[own, 2])
+        self._steps[own] = np.maximum(self._steps[own], steps)
+        self.points[own] = bed[other]
 
     def _add_inner(self, rays: Rays, rows: Rows) -> None:
         """Put vertices on rays with a lowered end, from which on their elevations change."""
@@ -186,9 +210,11 @@ class _Vertices:
         """Return the rays that follow each other and between whose ends the sheet is cut off."""
         first, second = rays.pairs.T
         lasts = np.array([self._find_last(ray) for ray in range(len(rays.sides))])
-        both = (self._cut[first] >= 0) | (self._cut[second] >= 0)
+        outer = np.array([self._lasts[side] for side in rays.sides.tolist()])
+        is_whole = self._grid[np.arange(len(outer)), outer] >= 0
+        either = ~(is_whole[first] & is_whole[second])
         a, b = lasts[first], lasts[second]
-        found: Int64Array = rays.pairs[both & (a >= 0) & (b >= 0) & (a != b)]
+        found: Int64Array = rays.pairs[either & (a >= 0) & (b >= 0)]
         return found
 
     def _find_last(self, ray: int) -> int:
@@ -216,17 +242,16 @@ class _Vertices:
             found.append(Breakline(path, kind="soft", name="section"))
         return found
 
-    def require_covered(self, rays: Rays, area: Any) -> None:
-        """Refuse a sheet that lacks a part. Raises LinesError."""
+    def find_lost(self, rays: Rays, area: Any) -> Float64Array:
+        """Return middles of rays that an area lacks."""
         import shapely
 
         rows = [self._list_row(ray) for ray in range(len(rays.sides))]
         ends = np.array([[row[0], row[-1]] for row in rows if len(row) > 1], np.int64)
         middles = self.points[ends.reshape(-1, 2), :2].mean(axis=1)
         shapely.prepare(area)
-        lost = middles[~shapely.dwithin(area, shapely.points(middles), 10.0 * NEAR)]
-        if len(lost):
-            raise _explain_open(rays, lost[0])
+        is_near = shapely.dwithin(area, shapely.points(middles), 10.0 * NEAR)
+        return np.asarray(middles[~is_near])
 
     def _list_inner_edges(self, rays: Rays) -> list[tuple[int, int]]:
         """Return the edges between vertices from which on elevations change."""
@@ -240,18 +265,18 @@ class _Vertices:
         own = np.flatnonzero(self._inner >= 0)
         pairs = np.concatenate([self._fold_rays, np.column_stack([own, own])])
         lowered = [(int(self._inner[ray]), self._find_last(ray)) for ray in own.tolist()]
-        vertices = np.array([*self.folds, *lowered], np.int64).reshape(-1, 2)
+        vertices = np.array([*self._fold_ends, *lowered], np.int64).reshape(-1, 2)
         steps = self._steps[vertices].max(axis=1, initial=0.0)
         return Fold(rays.stations[pairs], self.points[vertices, :2], steps)
 
 
-def _explain_open(rays: Rays, place: Float64Array) -> LinesError:
+def _explain_open(rays: Rays, road: Axis, place: Float64Array) -> LinesError:
     """Return the refusal of a sheet that has no outline near a place."""
     middles = rays.origins + 0.5 * rays.limits[:, None] * rays.ways
     near = int(np.hypot(*(middles - place).T).argmin())
     return LinesError(
-        f"At station {coordinate(rays.stations[near])} the corridor cannot be closed where it "
-        "meets that of other stations: the axis has to turn less sharply there."
+        f"At station {coordinate(road.wrap(rays.stations)[near])} the corridor cannot be closed "
+        "where it meets that of other stations: the axis has to turn less sharply there."
     )
 
 

@@ -11,7 +11,7 @@ from ....base.errors import OptionError
 
 if TYPE_CHECKING:
     from ....base.arrays import Float64Array
-    from ..alignments import Alignment, VerticalAlignment
+    from .axis import Axis
     from .designs import Design
 
 _MOST = 100_000
@@ -21,11 +21,9 @@ _EVEN = 4.0
 
 
 def choose_stations(
-    axis: Alignment,
-    vertical: VerticalAlignment,
+    road: Axis,
     design: Design,
     *,
-    span: tuple[float, float],
     widest: float,
     far: float,
     tolerance: tuple[float, float],
@@ -33,14 +31,16 @@ def choose_stations(
 ) -> Float64Array:
     """Return stations between which what is at most as wide lies within tolerances of chords.
 
-    ``span`` are the first and the last station, ``far`` is how far side slopes go, ``tolerance``
-    that in the plane, and that of elevations in their unit. The second derivative of a line at an
+    ``far`` is how far side slopes go, ``tolerance`` that in the plane, and that of elevations in
+    their unit. The second derivative of a line at an
     offset o along an axis of curvature k is at most k (1 + |o| k) + 2 |o'| k + |o| |k'|, and a
     chord of length s within s² / 8 of it.
 
     Raises OptionError if these are too many.
     """
-    parts = [np.array(span), design.changes, vertical.cut_into_chords(tolerance[1] / 2.0)]
+    axis, span = road.alignment, road.span
+    heights = road.repeat(road.profile.cut_into_chords(tolerance[1] / 2.0))
+    parts = [np.array(span), design.changes, heights]
     ends = [*axis.tabulate()["station"].tolist(), axis.end]
     widening = design.find_widening()
     count = 0
@@ -59,8 +59,9 @@ def choose_stations(
     if interval is not None:
         if (span[1] - span[0]) / interval > _MOST:
             raise OptionError("interval", interval, f"one that makes at most {_MOST:,} sections")
-        first, last = math.ceil(span[0] / interval), math.floor(span[1] / interval)
-        parts.append(np.arange(first, last + 1) * interval)
+        low, high = road.lap or span
+        first, last = math.ceil(low / interval), math.floor(high / interval)
+        parts.append(road.repeat(np.arange(first, last + 1) * interval))
     return _join_near(np.unique(np.concatenate(parts)), ends, span, axis.rounding)
 
 

@@ -13,6 +13,7 @@ from ....base.errors import OptionError
 FACE = 0.001
 """CRS units: how far apart both edges of a vertical face lie."""
 
+_STATION = "station"
 _COLUMNS = ("side", "name", "width", "slope", "rise", "ratio", "use")
 _SIDES = {"left": ("left",), "right": ("right",), "both": ("left", "right")}
 _USES = ("turns", "ditch", "cut", "fill")
@@ -205,8 +206,49 @@ class Template:
             side: {"": [], **{use: [] for use in _USES}} for side in _SIDES
         }
         for row in rows:
-            _add_row(parts, {str(key).strip(): value for key, value in row.items()})
+            named = {str(key).strip(): value for key, value in row.items()}
+            if not _is_filled(named.get(_STATION)):
+                named.pop(_STATION, None)
+            _add_row(parts, named)
         return cls(*(_make_side(side, parts[side]) for side in ("left", "right")))
+
+    @classmethod
+    def by_station(cls, rows: Iterable[Mapping[str, Any]]) -> dict[float, Template]:
+        """Return the templates of the rows of a table by their stations.
+
+        Parameters
+        ----------
+        rows : iterable of mappings
+            As of :meth:`from_table`, with a ``station`` besides; rows without one belong to the
+            templates of all stations.
+
+        Returns
+        -------
+        dict of float to Template
+            By stations in ascending order, CRS units; empty if no row has one.
+
+        Raises
+        ------
+        OptionError
+            If a station is no number, or as :meth:`from_table`.
+
+        Examples
+        --------
+        >>> import tinsmith as ts
+        >>> lanes = [{"station": at, "side": "both", "name": "lane", "width": at} for at in (3, 5)]
+        >>> slopes = [{"side": "both", "use": use, "ratio": 2} for use in ("cut", "fill")]
+        >>> found = ts.Template.by_station([*lanes, *slopes])
+        >>> {station: one.left.width for station, one in found.items()}
+        {3.0: 3.0, 5.0: 5.0}
+        """
+        plain = [{str(key).strip(): value for key, value in row.items()} for row in rows]
+        at = [row.pop(_STATION, None) for row in plain]
+        given = [_read_number(_STATION, one) if _is_filled(one) else None for one in at]
+        pairs = list(zip(given, plain, strict=True))
+        return {
+            station: cls.from_table(row for own, row in pairs if own in (None, station))
+            for station in sorted({one for one in given if one is not None})
+        }
 
 
 def _add_row(parts: dict[str, dict[str, list[Any]]], row: dict[str, Any]) -> None:

@@ -1,9 +1,11 @@
 """Corridors: volumes of closed forms, sections of the template, and what is refused."""
 
+import re
 from dataclasses import replace
 
 import numpy as np
 import pytest
+import shapely
 
 import tinsmith as ts
 
@@ -155,6 +157,98 @@ def test_a_line_in_space_is_an_axis():
     assert made.interpolate([[150, 200], [250, 200], [250, 203.5]]) == pytest.approx([7, 8, 7.93])
 
 
+# ---------------------------------------------------------------- axes that close
+
+DAM = ts.Template(ts.Side([ts.Part("crest", 3.0)], cut_slope=1, fill_slope=2))
+
+
+def measure_dam(along):
+    """Return the volume of the dam, 3 high, by the length of what lies at distances."""
+    away = np.linspace(0.0, 9.0, 900_001)
+    height = np.interp(away, [0.0, 3.0, 9.0], [3.0, 3.0, 0.0])
+    return float(np.trapezoid(height * along(away), away))
+
+
+def make_circle(radius, *, turn=1.0, start=0.0):
+    around = 2.0 * np.pi * radius
+    bent = turn / radius
+    arc = ts.Element("arc", (200.0 + radius, 200.0), turn * np.pi / 2, around, bent, bent)
+    rows = [ts.VerticalPoint(start, 8.0), ts.VerticalPoint(start + around, 8.0)]
+    return ts.Alignment([arc], start=start, verticals=[ts.VerticalAlignment(rows)])
+
+
+def find_folds(made):
+    return [note for note in made.report.notes if "cut off where both are as near" in note]
+
+
+def test_a_dam_around_a_square_pond_is_closed():
+    ground = make_ground()
+    ring = np.array([[150, 150], [250, 150], [250, 250], [150, 250], [150, 150]], float)
+    made = ts.corridor(ground, np.column_stack([ring, np.full(5, 8.0)]), DAM, tolerance=0.001)
+    inner = measure_dam(lambda away: 400.0 - 8.0 * away)
+    outer = measure_dam(lambda away: 400.0 + 2.0 * np.pi * away)
+    assert find_volume(ground, made, "fill") == pytest.approx(inner + outer, rel=1e-4)
+    assert ts.check(made).ok
+    assert made.area == pytest.approx(ground.area, rel=1e-12)
+    assert made.interpolate([[200, 200], [150, 200], [156, 200], [144, 200]]) == pytest.approx(
+        [5.0, 8.0, 6.5, 6.5], abs=1e-9
+    )
+    told = find_folds(made)
+    wanted = [0.0, 3.0, 97.0, 103.0, 197.0, 203.0, 297.0, 303.0, 397.0, 400.0]
+    assert list(map(float, re.findall(r"\d[\d.]*", told[0]))) == pytest.approx(wanted, abs=0.002)
+    lines = made.lines
+    rings = [
+        chain for chain, name in zip(lines.chains(), lines.names, strict=True) if name == "axis"
+    ]
+    assert sum(map(len, rings)) > 4
+    assert not np.isin("", lines.names).any()
+
+
+@pytest.mark.parametrize("turn", [1.0, -1.0], ids=["left", "right"])
+@pytest.mark.parametrize("radius", [60.0, 7.0, 2.0], ids=["wide", "slopes meet", "crests meet"])
+def test_a_ring_is_what_pappus_says(radius, turn):
+    ground = make_ground()
+    made = ts.corridor(ground, make_circle(radius, turn=turn, start=100.0), DAM, tolerance=0.0005)
+    inner = measure_dam(lambda away: 2.0 * np.pi * np.maximum(radius - away, 0.0))
+    outer = measure_dam(lambda away: 2.0 * np.pi * (radius + away))
+    assert find_volume(ground, made, "fill") == pytest.approx(inner + outer, rel=5e-4)
+    assert ts.check(made).ok
+    told = find_folds(made)
+    assert len(told) == (radius < 9.0)
+    if told:
+        assert f"At stations 100 to {100.0 + 2.0 * np.pi * radius:.0f}"[:20] in told[0]
+
+
+def test_sections_of_a_ring_change_by_stations_as_they_are_given():
+    axis = make_circle(60.0, start=1000.0)
+    around = axis.length
+    wide = ts.Template(ts.Side([ts.Part("crest", 5.0)], cut_slope=1, fill_slope=2))
+    given = {1000.0: DAM, 1000.0 + 0.4 * around: wide, 1000.0 + 0.9 * around: DAM}
+    made = ts.corridor(make_ground(), axis, given, interval=10.0)
+    for share, width in ((0.2, 4.0), (0.4, 5.0), (0.65, 4.0), (0.95, 3.0), (0.0, 3.0)):
+        found = measure(made, axis, 1000.0 + share * around, [-width, width, width + 1.0])
+        assert found == pytest.approx([8.0, 8.0, 7.5], abs=0.011)
+
+
+def test_a_ring_whose_section_does_not_close_is_refused():
+    wide = ts.Template(ts.Side([ts.Part("crest", 5.0)], cut_slope=1, fill_slope=2))
+    with pytest.raises(ts.LinesError, match="at the first station is another than at the last one"):
+        ts.corridor(make_ground(), make_circle(60.0), {0: DAM, 300: wide})
+    turning = ts.Template(ts.Side([ts.Part("lane", 3, turns=True)], cut_slope=1, fill_slope=2))
+    table = [[0, 0, 0], [100, 0.05, -0.05]]
+    with pytest.raises(ts.LinesError, match="at the first station is another"):
+        ts.corridor(make_ground(), make_circle(60.0), turning, superelevation=table)
+
+
+def test_a_part_of_a_ring_has_ends():
+    axis = make_circle(60.0)
+    end = axis.length / 4.0
+    ground = make_ground()
+    made = ts.corridor(ground, axis, DAM, start=0.0, end=end, tolerance=0.0005)
+    wanted = measure_dam(lambda away: np.pi * 60.0 + 0.0 * away)
+    assert find_volume(ground, made, "fill") == pytest.approx(wanted, rel=2e-3)
+
+
 # ---------------------------------------------------------------- notes and refusals
 
 
@@ -185,7 +279,12 @@ STRAIGHT = [[100, 200, 7], [300, 200, 7]]
         ([[100, 200], [300, 200]], {}, ts.LinesError, "no elevations"),
         ([[100, 200, 7], [100, 200, 7]], {}, ts.LinesError, "no length"),
         ([[100, 200, 7], [100, 200, 9], [200, 200, 9]], {}, ts.LinesError, "vertical at"),
-        ([[100, 100, 7], [200, 100, 7], [150, 200, 7], [100, 100, 7]], {}, ts.LinesError, "closes"),
+        (
+            [[100, 100, 7], [200, 100, 7], [150, 200, 7], [100, 100, 8]],
+            {},
+            ts.LinesError,
+            "closes, but its elevations at the first and the last station differ by 1",
+        ),
         ([[-50, 200, 7], [300, 200, 7]], {}, ts.PointsError, "lies off the ground"),
         ([[100, 100, 90], [300, 100, 90]], {}, ts.PointsError, "does not meet the ground"),
         (
@@ -194,6 +293,7 @@ STRAIGHT = [[100, 200, 7], [300, 200, 7]]
             ts.LinesError,
             "over itself",
         ),
+        ([[100, 200, 7], [200, 200, 7], [150, 212, 7]], {}, ts.LinesError, "reach an end of"),
         (STRAIGHT, {"start": 150, "end": 100}, ts.OptionError, "end"),
         (STRAIGHT, {"start": -5}, ts.OptionError, "where elevations are designed"),
         (STRAIGHT, {"tolerance": 0}, ts.OptionError, "tolerance"),
@@ -237,18 +337,39 @@ def test_an_axis_in_another_crs_is_refused():
         )
 
 
-def test_a_turn_that_is_too_sharp_is_refused_and_a_small_one_is_told():
+@pytest.mark.parametrize(
+    "points",
+    [
+        [[0, 0], [50, 0], [50, -20]],
+        [[0, 0], [40, 0], [43, -6], [90, -10]],
+        [[0, 0], [40, 0], [40, 9], [0, 9]],
+        [[0, 0], [50, 0], [-10, 24]],
+        [[0, 0], [30, 0], [30, 4], [34, 4], [34, 0], [70, 0]],
+    ],
+    ids=["right angle", "short leg", "back", "acute", "step"],
+)
+def test_turns_without_a_curve_have_the_section_of_the_nearest_place(points):
     rng = np.random.default_rng(3)
     xy = rng.uniform(-60, 160, (200, 2))
     ground = ts.triangulate(np.column_stack([xy, rng.uniform(46, 50, 200)]))
     parts = [ts.Part("lane", 3.5, -0.02), ts.Part("path", 1.6)]
     template = ts.Template(ts.Side(parts, cut_slope=0.5, fill_slope=1.0))
-    turn = [[0, 0, 51.0], [50, 0, 51], [50, -20, 51]]
-    with pytest.raises(ts.LinesError, match="cannot be laid out near station 61"):
-        ts.corridor(ground, turn, template)
-    bend = [[0, 0, 51.0], [40, 0, 51], [43, -6, 51], [90, -10, 51]]
-    made = ts.corridor(ground, bend, template)
-    assert "meet those of other stations" in " ".join(made.report.notes)
+    made = ts.corridor(ground, np.column_stack([points, np.full(len(points), 51.0)]), template)
+    assert ts.check(made).ok
+    assert "as near" in " ".join(made.report.notes)
+    line = shapely.LineString(points)
+    places = shapely.get_coordinates(shapely.buffer(line, 14.0).envelope)
+    low, high = places.min(axis=0), places.max(axis=0)
+    places = rng.uniform(low, high, (3000, 2))
+    away = shapely.distance(line, shapely.points(places))
+    ends = shapely.multipoints([points[0], points[-1]])
+    beside = shapely.distance(ends, shapely.points(places)) > away + 1e-6
+    lines = np.abs(away[:, None] - [0.0, 3.5, 5.1]).min(axis=1) > 0.02
+    bed = np.interp(away, [0.0, 3.5, 5.1], [51.0, 50.93, 50.93])
+    fill = np.maximum(bed - np.maximum(away - 5.1, 0.0), ground.interpolate(places))
+    chosen = beside & lines & np.isfinite(fill)
+    assert chosen.sum() > 1000
+    assert made.interpolate(places[chosen]) == pytest.approx(fill[chosen], abs=0.021)
 
 
 def test_a_slope_in_percent_is_refused():

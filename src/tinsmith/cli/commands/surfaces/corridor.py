@@ -11,7 +11,7 @@ from ...command import command
 from ...job import Job, name_features, surface_options
 from ...option_groups import alignment_option, holds_alignments, read_axis, read_line
 from ...output import Facts
-from ...parameters import output_files
+from ...parameters import file_option, output_files
 from ...paths import INPUT, Named
 from ...product_options import product_options
 
@@ -31,15 +31,28 @@ from ...product_options import product_options
     interval="A section at every multiple of it besides.",
     tolerance="How far chords may lie from curves.",
 )
+@file_option(
+    "--superelevation",
+    "Table of station, left, right: slopes for parts that turn.",
+    name="turns",
+    type=INPUT,
+)
 @surface_options()
 def corridor(
-    ground: Path, axis: Path, template: Path, alignment: str | None, job: Job, **asked: Any
+    ground: Path,
+    axis: Path,
+    template: Path,
+    alignment: str | None,
+    turns: Path | None,
+    job: Job,
+    **asked: Any,
 ) -> None:
     r"""Carry the cross section in TEMPLATE along AXIS, with side slopes to the TIN in GROUND.
 
     AXIS is LandXML with an alignment and its vertical alignment, or a vector file of one line in
-    space, or a table of its vertices, whose elevations are the profile. TEMPLATE is a CSV file with
-    a row for each part, from the axis outwards. The summary gives cut and fill.
+    space, or a table of its vertices, whose elevations are the profile. TEMPLATE is CSV or JSON
+    with a row for each part, from the axis outwards; a column "station" makes it several, between
+    which all changes evenly. The summary gives cut and fill.
 
     A table:
       side,name,width,slope,use,ratio
@@ -51,11 +64,14 @@ def corridor(
     Example:
       tinsmith corridor ground.csv road.xml road.csv -o design.gpkg
     """
-    from ....io import read_template
+    from ....io import read_superelevation, read_template
     from ....terrain import corridor as make_corridor
     from ....terrain import volume
 
     more = [*name_features(axis, "the axis"), Named(template, "the template")]
+    if turns is not None:
+        more.append(Named(turns, "--superelevation"))
+        asked["superelevation"] = read_superelevation(turns)
     planned = job.plan(job.list_inputs(ground, more=more), "TIN")
     tin = job.read_tin(ground)
     section = read_template(template)
