@@ -4,28 +4,39 @@ from __future__ import annotations
 
 import json
 from itertools import pairwise
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from ....base import optional
 from ....base.atomic import replacing
 from ....base.crs import CRS, METRE
-from ....base.errors import CrsError, WriteError
+from ....base.errors import CrsError
+from ....base.notes import warn
 from ....base.results import unit_text
 from ....base.sentences import FILE, coordinate, counted, inflect
 from ...reprojection import reproject
 from ..surface_features import make_features
+from .antimeridian import (
+    DEGREE_DECIMALS,
+    HALF_TURN,
+    TURN,
+    Pieces,
+    cut_at_antimeridian,
+    find_west_and_east,
+)
 from .values import json_texts, properties_template
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Iterator, Sequence
+    from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
     from pathlib import Path
 
     from ....base.arrays import AnyArray, Float64Array, Int64Array, ObjectArray
     from ....base.crs import CRS, Unit
     from ....base.policies import FeatureKind
     from ....base.progress import Tell
-    from ....base.results import Features
+    from ....base.results import Features, Kind
     from ..surface_features import Writable
 
 _BATCH = 16_384
@@ -43,6 +54,8 @@ class Texts(NamedTuple):
     offsets: Sequence[AnyArray]
     """As :class:`Features` has them."""
     format_properties: Callable[[slice], Iterable[str]]
+    cut: Mapping[int, str] = MappingProxyType({})
+    """Geometries, as JSON, of features that are none of this type as they were cut."""
 
     def iterate(self) -> Iterator[tuple[float, list[str]]]:
         """Yield the texts of some features after others, with the fraction done."""
@@ -70,14 +83,16 @@ class Texts(NamedTuple):
                 '{"type":"Feature","properties":%s,"geometry":{"type":"'
                 f'{self.geometry}","coordinates":{form}}}}}'
             )
-            properties = self.format_properties(slice(start, stop))
+            properties = list(self.format_properties(slice(start, stop)))
             rows = zip(properties, *[iter(pieces)] * width, strict=True)
-            yield stop / count, list(map(form.__mod__, rows))
+            texts = list(map(form.__mod__, rows))
+            for row in self.cut.keys() & range(start, stop):
+                members = f'"properties":{properties[row - start]},"geometry":{self.cut[row]}'
+                texts[row - start] = f'{{"type":"Feature",{members}}}'
+            yield stop / count, texts
 
 
-DEGREE_DECIMALS = 9  # a tenth of a millimetre on the ground
 ELEVATION_DECIMALS = 6  # a micrometre
-_HALF_TURN = 180.0
 
 
 class Places(NamedTuple):
@@ -109,6 +124,10 @@ def project_to_wgs84(points: Float64Array, crs: CRS | None, elevation_unit: Unit
     target = CRS.of("EPSG:4979" if has_datum else "OGC:CRS84")
     found = reproject(points, crs, target, unit=elevation_unit, wanted=METRE, needs_datum=False)
     moved = found.points
+    moved[:, :2] = np.round(moved[:, :2], DEGREE_DECIMALS)
+    beyond = np.abs(moved[:, 0]) > HALF_TURN  # by rounding, or counted from Greenwich eastwards
+    moved[beyond, 0] -= np.copysign(TURN, moved[beyond, 0])
+    moved[beyond, 0] = np.round(moved[beyond, 0], DEGREE_DECIMALS)
     outside = (np.abs(moved[:, :2]) > (180.0, 90.0)).any(axis=1)
     if outside.any():
         row = int(np.argmax(outside))
@@ -121,7 +140,6 @@ def project_to_wgs84(points: Float64Array, crs: CRS | None, elevation_unit: Unit
             "180 and latitudes of -90 to 90 are allowed; check that the CRS is the right one.",
             crs=crs,
         )
-    moved[:, :2] = np.round(moved[:, :2], DEGREE_DECIMALS)
     moved[:, 2] = np.round(moved[:, 2], ELEVATION_DECIMALS)
     members: tuple[tuple[str, str], ...] = ()
     usual = crs.usual_elevation_unit
@@ -161,23 +179,78 @@ def format_positions(xyz: Float64Array) -> ObjectArray:
     return written
 
 
-def require_one_piece(longitudes: Float64Array) -> None:
-    """Refuse features that reach from one end of the longitudes to the other.
+def cut_places(
+    kind: Kind,
+    levels: tuple[AnyArray, ...],
+    points: Float64Array,
+    places: Float64Array,
+    system: tuple[CRS | None, Unit | None],
+) -> Pieces:
+    """Cut lines and polygons at the antimeridian, and tell of it.
 
     Parameters
     ----------
-    longitudes : (m, k) float64 array, degrees
-        Of the k corners of each feature.
+    kind : {"points", "lines", "polygons"}
+    levels : tuple of int arrays
+        As :class:`Features` has them.
+    points : (n, 3) float64 array
+        Of all features in their CRS, one after the other; NaN for an unknown elevation.
+    places : (n, 3) float64 array
+        Their longitudes, latitudes and elevations.
+    system : (CRS, Unit or None)
+        CRS and unit of elevations of the points.
     """
-    wide = np.ptp(longitudes, axis=1) > _HALF_TURN
-    count = int(wide.sum())
+    crs, unit = system
+
+    def between(here: Int64Array, there: Int64Array, share: Float64Array) -> Float64Array:
+        ways = points[here] + share[:, None] * (points[there] - points[here])
+        gaps = np.isnan(ways[:, 2])
+        ways[gaps, 2] = 0.0
+        found = project_to_wgs84(ways, crs, unit).xyz
+        found[gaps, 2] = np.nan
+        return found
+
+    is_geographic = crs is not None and crs.is_geographic
+    pieces = cut_at_antimeridian(kind, levels, places, between, is_geographic=is_geographic)
+    count = len(pieces.cut)
     if count:
-        crossing = inflect("[crosses|cross] the antimeridian or [holds|hold]", count)
-        raise WriteError(
-            f"Cannot write {FILE}: {counted(count, 'triangle')} {crossing} a pole, "
-            "which longitude and latitude cannot show in one piece; keep the coordinates "
-            "of the CRS with `projected=True`."
-        )
+        what = inflect(f"{counted(count, 'feature')} [crosses|cross]", count)
+        parts = inflect("[was|were] cut there into parts, as RFC 7946 asks", count)
+        warn(f"{FILE}: {what} the antimeridian and {parts}.")
+    return pieces
+
+
+def format_cut(pieces: Pieces) -> dict[int, str]:
+    """Return the geometries of features that were cut as JSON."""
+    shapely = optional.load("shapely")
+
+    def format_line(line: object) -> str:
+        return f"[{','.join(_format_known(shapely.get_coordinates(line, include_z=True)))}]"
+
+    def format_part(part: object) -> str:
+        rings = shapely.get_rings(part).tolist()
+        return f"[{','.join(map(format_line, rings))}]" if rings else format_line(part)
+
+    return {
+        row: f'{{"type":"Multi{parts[0].geom_type}","coordinates":['
+        f"{','.join(map(format_part, parts.tolist()))}]}}"
+        for row, parts in pieces.cut.items()
+    }
+
+
+def find_box(xyz: Float64Array, spans: Float64Array | None) -> list[float]:
+    """Return the numbers of a ``bbox``: west > east if it crosses the antimeridian.
+
+    Parameters
+    ----------
+    xyz : (n, 2) or (n, 3) float64 array
+    spans : (k, 2) float64 array or None
+        Of the longitudes of features; None in another CRS.
+    """
+    low, high = xyz.min(axis=0).tolist(), xyz.max(axis=0).tolist()
+    if spans is not None:
+        low[0], high[0] = find_west_and_east(spans)
+    return [*low, *high]
 
 
 def write_collection(
@@ -207,8 +280,7 @@ def write_features(
     counter-clockwise.
     """
     places = (keep_in_crs if projected else project_to_wgs84)(*_locate(features))
-    if places.crs_member is None:
-        _require_one_side(places.xyz, features)
+    texts, pieces = _format_features(features, places)
     members: list[tuple[str, Any]] = list(places.members) if features.has_elevations else []
     if features.units:
         members.append(("units", {k: unit_text(features.units, k) for k in features.units}))
@@ -216,11 +288,10 @@ def write_features(
         members.append(("notes", list(features.notes)))
     if len(places.xyz) and not (features.has_elevations and np.isnan(features.coordinates).any()):
         corners = places.xyz[:, : features.coordinates.shape[1]]
-        members.append(("bbox", [*corners.min(axis=0).tolist(), *corners.max(axis=0).tolist()]))
+        members.append(("bbox", find_box(corners, None if pieces is None else pieces.spans)))
     first = [("name", json.dumps(features.name))] if features.name else []
     if places.crs_member is not None:
         first.append(("crs", places.crs_member))
-    texts = _format_features(features, places)
     rest = ((name, json.dumps(value)) for name, value in members)
     write_collection(path, [*first, *rest], texts, progress)
 
@@ -239,10 +310,9 @@ def write_feature_lines(
         Of a TIN; default triangles.
     """
     features = make_features(surface, kind)
-    places = project_to_wgs84(*_locate(features))
-    _require_one_side(places.xyz, features)
+    texts, _ = _format_features(features, project_to_wgs84(*_locate(features)))
     with replacing(path, binary=False) as file:
-        for done, written in _format_features(features, places).iterate():
+        for done, written in texts.iterate():
             file.writelines(f"{line}\n" for line in written)
             if progress is not None:
                 progress(done)
@@ -259,17 +329,18 @@ def _locate(features: Features) -> tuple[Float64Array, CRS | None, Unit | None]:
     return points, crs, features.elevation_unit
 
 
-def _format_features(features: Features, places: Places) -> Texts:
+def _format_features(features: Features, places: Places) -> tuple[Texts, Pieces | None]:
     """Return features as texts; a position of unknown elevation has two numbers."""
-    if features.has_elevations:
-        positions = format_positions(places.xyz)
-        gaps = np.isnan(features.coordinates[:, 2])
-        positions[gaps] = format_positions(places.xyz[gaps, :2])
-    else:
-        positions = format_positions(places.xyz[:, :2])
-    vertices = np.arange(len(positions))
-    if features.kind == "polygons" and places.crs_member is None:
-        vertices = turn_rings(vertices, features.offsets, places.xyz)
+    points, crs, unit = _locate(features)
+    xyz, levels, pieces = places.xyz.copy(), features.offsets, None
+    is_unknown = np.isnan(features.coordinates[:, 2]) if features.has_elevations else slice(None)
+    xyz[is_unknown, 2] = points[is_unknown, 2] = np.nan
+    if places.crs_member is None:
+        pieces = cut_places(features.kind, levels, points, xyz, (crs, unit))
+        xyz, levels = pieces.xyz, pieces.levels
+    vertices = np.arange(len(xyz))
+    if features.kind == "polygons" and pieces is not None:
+        vertices = turn_rings(vertices, levels, xyz)
     template = properties_template(list(features.columns))
 
     def format_properties(part: slice) -> Iterable[str]:
@@ -277,7 +348,18 @@ def _format_features(features: Features, places: Places) -> Texts:
         rows = zip(*columns, strict=True) if columns else [()] * (part.stop - part.start)
         return map(template.__mod__, rows)
 
-    return Texts(features.geometry_type, positions, vertices, features.offsets, format_properties)
+    cut = {} if pieces is None else format_cut(pieces)
+    kind, positions = features.geometry_type, _format_known(xyz)
+    return Texts(kind, positions, vertices, levels, format_properties, cut), pieces
+
+
+def _format_known(xyz: Float64Array) -> ObjectArray:
+    """Return each position as JSON text, without an elevation that is NaN."""
+    gaps = np.isnan(xyz[:, 2])
+    positions = format_positions(xyz[:, :2] if gaps.all() else xyz)
+    if not gaps.all():
+        positions[gaps] = format_positions(xyz[gaps, :2])
+    return positions
 
 
 def turn_rings(vertices: AnyArray, levels: Sequence[AnyArray], xyz: Float64Array) -> Int64Array:
@@ -309,19 +391,3 @@ def turn_rings(vertices: AnyArray, levels: Sequence[AnyArray], xyz: Float64Array
         part = slice(offsets[ring], offsets[ring + 1])
         turned[part] = turned[part][::-1]
     return turned
-
-
-def _require_one_side(xyz: Float64Array, features: Features) -> None:
-    """Refuse a line or ring that jumps from one end of the longitudes to the other."""
-    if not features.offsets or len(xyz) == 0:
-        return
-    jumps = np.abs(np.diff(xyz[:, 0])) > _HALF_TURN
-    jumps[features.offsets[0][1:-1] - 1] = False
-    if jumps.any():
-        what = features.kind[:-1]
-        number = int(np.searchsorted(features.offsets[0], jumps.argmax(), side="right")) - 1
-        raise WriteError(
-            f"Cannot write {FILE}: {what if what == 'line' else 'ring'} {number} crosses the "
-            "antimeridian or holds a pole, which longitude and latitude cannot show in one piece; "
-            "keep the coordinates of the CRS with `projected=True`."
-        )

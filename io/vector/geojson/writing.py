@@ -13,12 +13,15 @@ from ....base.results import Features
 from ....base.sentences import FILE, counted
 from ....tin import Survey
 from ..surface_features import choose_kind, list_parts
+from .antimeridian import HALF_TURN
 from .features import (
     Texts,
+    cut_places,
+    find_box,
+    format_cut,
     format_positions,
     keep_in_crs,
     project_to_wgs84,
-    require_one_piece,
     turn_rings,
     write_collection,
     write_features,
@@ -33,6 +36,7 @@ if TYPE_CHECKING:
     from ....base.progress import Tell
     from ....tin import TIN
     from ..surface_features import Parts
+    from .antimeridian import Pieces
     from .features import Places
 
 _LARGEST = 2**63
@@ -78,8 +82,7 @@ def write(
     FormatError
         If features are asked for a kind, a survey for triangles, or a TIN without lines for lines.
     WriteError
-        If the file cannot be written, a coordinate is not finite, or the surface crosses the
-        antimeridian.
+        If the file cannot be written, a coordinate is not finite, or a ring holds a pole.
 
     Notes
     -----
@@ -91,6 +94,11 @@ def write(
     ``elevation_unit`` names their unit if it is known. Slope is that of the true surface, as
     :func:`tinsmith.slope` gives it. Areas are in CRS units squared where the CRS is not
     known.
+
+    What crosses the antimeridian is cut there, as section 3.1.9 asks, into a MultiPolygon or
+    MultiLineString, of which a LossWarning tells: at the place where the straight way in the CRS
+    crosses it, with the elevation that is linear between its ends; the members ``bbox`` then have
+    west > east. Reading joins the parts again.
 
     The file is written in batches; beside the surface itself memory holds about 100 bytes for
     each vertex.
@@ -112,39 +120,53 @@ def write(
         parts = list_parts(surface, chosen)
     place = keep_in_crs if projected else project_to_wgs84
     places = place(surface.points, surface.crs, surface.elevation_unit)
+    used, pieces = places.xyz, None
+    spans = used[:, [0, 0]] if places.crs_member is None else None
     if parts is None or isinstance(surface, Survey):
-        used, texts = places.xyz, _format_points(surface, places)
+        texts = _format_points(surface, places)
     else:
-        corners = surface.triangles
-        if places.crs_member is None:
-            require_one_piece(places.xyz[corners, 0])
-        used = places.xyz[np.unique(parts.vertices if chosen == "lines" else corners)]
-        texts = _format_parts(chosen, parts, places)
+        vertices = parts.vertices
+        used = used[np.unique(vertices if chosen == "lines" else surface.triangles)]
+        if spans is not None and np.ptp(used[:, 0]) > HALF_TURN:
+            pieces = cut_places(
+                parts.kind,
+                parts.offsets,
+                surface.points[vertices],
+                places.xyz[vertices],
+                (surface.crs, surface.elevation_unit),
+            )
+            spans = pieces.spans
+        texts = _format_parts(chosen, parts, places, pieces)
     members = [] if places.crs_member is None else [("crs", places.crs_member)]
     members += [(name, json.dumps(text)) for name, text in places.members]
     if len(used):
-        box = [*used.min(axis=0).tolist(), *used.max(axis=0).tolist()]
-        members.append(("bbox", json.dumps(box)))
+        members.append(("bbox", json.dumps(find_box(used, spans))))
     write_collection(path, members, texts, progress)
 
 
-def _format_parts(kind: str, parts: Parts, places: Places) -> Texts:
-    vertices, columns, forms = parts.vertices, dict(parts.columns), dict(_FORMS.get(kind, {}))
+def _format_parts(kind: str, parts: Parts, places: Places, pieces: Pieces | None) -> Texts:
+    columns, forms = dict(parts.columns), dict(_FORMS.get(kind, {}))
+    if pieces is None:
+        vertices, levels, xyz = parts.vertices, parts.offsets, places.xyz
+    else:
+        vertices, levels, xyz = np.arange(len(pieces.xyz)), pieces.levels, pieces.xyz
     if kind == "triangles":
         # As written, a hair west of north must not become the full circle.
         columns["aspect"] = np.round(columns["aspect"], 4) % 360.0
     elif kind == "lines" and len(columns) == 1:
         unknown = np.full(len(columns["id"]), None, object)
         columns |= {"kind": unknown, "name": np.full(len(unknown), ""), "source": unknown}
-    if kind == "triangles" and places.crs_member is None:  # else the order is the TIN's own
+    if (
+        kind == "triangles" and places.crs_member is None and pieces is None
+    ):  # else the order is the TIN's own
         triangles = vertices.reshape(-1, 4)[:, :3]
         a, b, c = (places.xyz[triangles[:, k], :2] for k in range(3))
         ab, ac = b - a, c - a
         clockwise = ab[:, 0] * ac[:, 1] < ab[:, 1] * ac[:, 0]
         triangles = np.where(clockwise[:, None], triangles[:, ::-1], triangles)
         vertices = triangles[:, [0, 1, 2, 0]].ravel()
-    elif kind == "hull":
-        vertices = turn_rings(vertices, parts.offsets, places.xyz)
+    elif kind == "hull" or (kind == "triangles" and pieces is not None):
+        vertices = turn_rings(vertices, levels, xyz)
     form = ",".join(f'"{name}":{forms.get(name, "%s")}' for name in columns)
 
     def format_properties(part: slice) -> Iterable[str]:
@@ -158,8 +180,8 @@ def _format_parts(kind: str, parts: Parts, places: Places) -> Texts:
         return texts
 
     geometry = {"lines": "LineString", "polygons": "Polygon"}[parts.kind]
-    positions = format_positions(places.xyz)
-    return Texts(geometry, positions, vertices, parts.offsets, format_properties)
+    cut = {} if pieces is None else format_cut(pieces)
+    return Texts(geometry, format_positions(xyz), vertices, levels, format_properties, cut)
 
 
 def _format_points(surface: TIN | Survey, places: Places) -> Texts:

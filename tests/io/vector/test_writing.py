@@ -365,14 +365,6 @@ def test_geojson_without_a_crs_is_refused(tmp_path):
     ts.write(features("points", crs=None), tmp_path / "a.geojson", projected=True)
 
 
-def test_geojson_lines_over_the_antimeridian_are_refused(tmp_path):
-    across = ts.Features.of_lines([[0, 0], [1, 1], [179, 0], [-179, 1]], [0, 2, 4], crs=4326)
-    with pytest.raises(WriteError, match="line 1 crosses the antimeridian"):
-        ts.write(across, tmp_path / "a.geojson")
-    apart = ts.Features.of_lines([[179, 0], [178, 1], [-179, 0], [-178, 1]], [0, 2, 4], crs=4326)
-    ts.write(apart, tmp_path / "a.geojson")
-
-
 def test_progress_ends_with_all(tmp_path):
     seen = []
     ts.write(features("lines"), tmp_path / "a.geojson", progress=seen.append)

@@ -395,14 +395,6 @@ def test_points_outside_the_domain_of_the_projection(tmp_path):
     refused(CrsError, "3 points", tin, tmp_path / "a.geojson")
 
 
-def test_a_surface_across_the_antimeridian(tmp_path):
-    points = [[100_000, 7e6, 0], [900_000, 7e6, 0], [500_000, 7.5e6, 0], [200_000, 6.9e6, 0]]
-    tin = ts.triangulate(np.array(points) - (330_000, 0, 0), crs="EPSG:32601")
-    refused(WriteError, "antimeridian.*projected=True", tin, tmp_path / "a.geojson")
-    document = written(tin, tmp_path / "b.geojson", projected=True)
-    assert len(document["features"]) == len(tin.triangles)
-
-
 def test_a_surface_about_the_pole(tmp_path):
     points = [[2.0e6, 2.1e6, 0], [1.9e6, 1.9e6, 0], [2.1e6, 1.9e6, 0]]
     tin = ts.triangulate(points, crs="EPSG:32661")
