@@ -81,7 +81,8 @@ def write(
     **options
         Options of the writer, which ``tinsmith formats NAME`` explains. Of text and tables:
         ``columns``, ``delimiter``, ``header``, ``decimals``; of rasters ``dtype``, ``nodata``,
-        ``overviews``, ``compression``, ``band``; of vector files ``kind``, ``layer``, ``append``,
+        ``overviews``, ``compression``, ``band``, ``encoding``, ``gaps``, ``min_zoom``,
+        ``max_zoom``; of vector files ``kind``, ``layer``, ``append``,
         ``overwrite``, ``compact``, ``projected``, ``multipatch``; of LandXML and DXF ``name``,
         ``unit``, ``version``, ``labels``, ``label_height``; of meshes ``ortho``, ``exaggeration``,
         ``scale``, ``solid``, ``thickness``, ``size``, ``precision``, ``max_level``, ``gzipped``,

@@ -67,4 +67,12 @@ FORMATS = (
         precision="Every number is kept bit for bit.",
         losses="Units and notes; all bands but one.",
     ),
+    _make(
+        "terrain-tiles",
+        "Elevations as tiles for maps in browsers (terrain-RGB), in PMTiles or MBTiles",
+        "terrain_tiles:write",
+        suffixes=(".pmtiles", ".mbtiles"),
+        precision="Interpolated in Web Mercator; elevations to 1/256 m, or 0.1 m.",
+        losses="The CRS; the unit, which becomes the metre; all bands but one.",
+    ),
 )

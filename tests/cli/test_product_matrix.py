@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 from support.commands import run
 from support.product_calls import HILL, LINE, PLACE, RESULTS, RING, add_height
+from support.terrain_tiles import read_archive
 
 import tinsmith as ts
 from tinsmith.cli.command_list import SUMMARIES
@@ -73,6 +74,18 @@ def count(path, kind):
     return len(read_geometries(path, crs=HILL.crs))
 
 
+def require_tiles(made, path):
+    """Require that an archive holds tiles of elevations, and that nothing else makes one."""
+    if len(made.bands) > 1:
+        with pytest.raises(ts.OptionError, match="a tile holds one"):
+            ts.write(made, path)
+    elif getattr(next(iter(made.units.values()), None), "metres", None) is None:
+        with pytest.raises(ts.FormatError, match="is no length"):
+            ts.write(made, path)
+    else:
+        assert read_archive(ts.write(made, path))[1]
+
+
 def require_drawn(path, made):
     """Require that a drawing holds features: its lines and rings, or points."""
     if made.kind == "points":
@@ -100,6 +113,9 @@ def test_every_product_is_written_to_every_format_and_read_back(tmp_path, name):
         if kind == "Raster" and len(made.bands) > 1 and suffix == ".asc":
             with pytest.raises(ts.OptionError, match="a text grid holds one"):
                 ts.write(made, path)
+            continue
+        if suffix == ".pmtiles":
+            require_tiles(made, path)
             continue
         ts.write(made, path)
         if suffix in (".dxf", ".xml") and kind == "Features":
@@ -218,6 +234,7 @@ def test_every_command_writes_every_format_of_what_it_makes(files, tmp_path, mon
         for kind in (*kinds, *tabulated)
         for suffix in list_suffixes(kind)
         if not (kind == "TIN" and len(kinds) > 1 and suffix in OF_OTHERS)
+        if not (name == "hillshade" and suffix == ".pmtiles")  # whose cells are no elevations
     }
     given = [word for path in outputs if path.suffix != ".xml" for word in ("-o", str(path))]
     done = run(*arguments, *given, "-q")
@@ -225,7 +242,12 @@ def test_every_command_writes_every_format_of_what_it_makes(files, tmp_path, mon
     assert not planned or sorted(planned) == sorted(expected.split())
     found = {}
     for path, kind in outputs.items():
-        if path.suffix in (".xml", ".dxf", ".glb"):  # drawings have no features to count
+        if path.suffix in (
+            ".xml",
+            ".dxf",
+            ".glb",
+            ".pmtiles",
+        ):  # drawings and tiles have no features to count
             continue
         found.setdefault(kind, set()).add(count(path, kind))
     assert {kind: len(counts) for kind, counts in found.items()} == dict.fromkeys(found, 1), found

@@ -20,6 +20,7 @@ _EXTRA_OF = {
     "geopandas": "interop",
     "meshio": "mesh",
     "netCDF4": "mesh",
+    "pmtiles": "interop",
     "pyarrow": "interop",
     "trimesh": "interop",
     "xarray": "interop",

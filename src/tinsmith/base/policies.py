@@ -177,3 +177,9 @@ PointMarking: TypeAlias = Literal["none", "marks", "numbers", "elevations", "bot
 
 GridStyle: TypeAlias = Literal["crosses", "lines", "none"]
 """How the coordinate grid of a plan is drawn."""
+
+TileEncoding: TypeAlias = Literal["terrarium", "mapbox"]
+"""How the colours of a tile mean elevations."""
+
+TileGaps: TypeAlias = Literal["lowest", "transparent"]
+"""What the pixels of a tile without data show."""
