@@ -401,3 +401,30 @@ def test_cancelling_ends_the_command_and_leaves_nothing(tmp_path, survey):
     assert said[0][1].startswith("tinsmith 9.9.9")
     number = (tmp_path / "stubborn.pid").read_text()
     assert not Path(f"/proc/{number}").exists()
+
+
+@pytest.mark.slow
+@pytest.mark.timeout(900)
+def test_choices_may_be_given_by_the_numbers_that_qgis_lists(tmp_path, survey):
+    _, layers = make_inputs(tmp_path, survey)
+    (tmp_path / "word").mkdir()
+    (tmp_path / "number").mkdir()
+    given = {"word": ("bands", "hillshade", "percent"), "number": (1, "3", 1)}
+    jobs = {}
+    for how, (product, value, unit) in given.items():
+        folder = tmp_path / how
+        jobs |= {
+            f"contours {how}": job("contours", INPUT="ground", INTERVAL=5, PRODUCT=product,
+                                   OUTPUT=folder / "a.fgb"),
+            f"raster {how}": job("raster", INPUT="ground", SPACING=4, VALUE=value,
+                                 OUTPUT=folder / "a.tif"),
+            f"slope {how}": job("slope", INPUT="ground", UNIT=unit, BREAKS="5,15",
+                                OUTPUT=folder / "a.gpkg", TABLE=folder / "a.csv"),
+        }  # fmt: skip
+    jobs["none"] = job("raster", INPUT="ground", SPACING=4, VALUE=99, OUTPUT=tmp_path / "b.tif")
+    told = drive(tmp_path, layers, jobs)
+    refused = told.pop("none")
+    assert "VALUE" in refused["error"] or "Value" in refused["error"]
+    require_done(told)
+    for name in ("a.fgb", "a.tif", "a.csv"):
+        assert (tmp_path / "word" / name).read_bytes() == (tmp_path / "number" / name).read_bytes()

@@ -71,6 +71,7 @@ def test_the_metadata_keep_the_rules_of_the_plugin_repository():
     assert told["hasProcessingProvider"] == "yes"
     assert "plugin" not in told["name"].lower()
     assert re.fullmatch(r"3\.\d+", told["qgisMinimumVersion"])
+    assert told["qgisMaximumVersion"] == "4.99"  # QGIS 4 lists no others
     assert (PACKAGE / told["icon"]).exists()
     for key in ("repository", "tracker", "homepage"):
         assert told[key].startswith("https://")
@@ -99,6 +100,13 @@ def test_nothing_of_tinsmith_is_imported_inside_qgis():
     assert len(modules) > 15
     forbidden = r"^\s*(?:from|import) +(?:tinsmith|shapely|numpy|pandas|pyproj|rasterio|pyogrio)\b"
     assert not [text for text in modules if re.search(forbidden, text, re.MULTILINE)]
+
+
+def test_nothing_is_imported_from_a_version_of_qt():
+    """QGIS 4 has Qt 6, whose enumerations have names of their own."""
+    for path in PACKAGE.rglob("*.py"):
+        text = path.read_text()
+        assert not re.search(r"(?:from|import) PyQt|\bQt\.[A-Z]|\.exec_\(", text), path
 
 
 def test_the_command_begins_its_version_as_the_plugin_expects():

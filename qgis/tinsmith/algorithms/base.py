@@ -14,6 +14,7 @@ from qgis.core import (
     QgsProcessingException,
     QgsProcessingOutputNumber,
     QgsProcessingParameterBoolean,
+    QgsProcessingParameterEnum,
     QgsProcessingParameterFileDestination,
     QgsProcessingParameterString,
     QgsProcessingParameterVectorDestination,
@@ -268,6 +269,23 @@ class CommandAlgorithm(QgsProcessingAlgorithm):
 
     # ------------------------------------------------------------ runs
 
+    def checkParameterValues(self, parameters: dict[str, Any], context: Any) -> tuple[bool, str]:
+        found: tuple[bool, str] = super().checkParameterValues(
+            self.name_choices(parameters), context
+        )
+        return found
+
+    def name_choices(self, parameters: dict[str, Any]) -> dict[str, Any]:
+        """Return parameters with words for the numbers by which QGIS lists choices."""
+        given = dict(parameters)
+        for one in self.parameterDefinitions():
+            number = str(given.get(one.name()))
+            if isinstance(one, QgsProcessingParameterEnum) and number.isdecimal():
+                words = one.options()
+                if number not in words and int(number) < len(words):
+                    given[one.name()] = words[int(number)]
+        return given
+
     def prepareAlgorithm(self, parameters: dict[str, Any], context: Any, feedback: Any) -> bool:
         """Look at the layers, in the main thread, which owns them; QGIS hears of faults later.
 
@@ -292,7 +310,8 @@ class CommandAlgorithm(QgsProcessingAlgorithm):
         root = QgsProcessingUtils.tempFolder()
         with tempfile.TemporaryDirectory(prefix="tinsmith-", dir=root) as folder:
             try:
-                return self.make(Run(self, parameters, context, feedback, folder))
+                given = self.name_choices(parameters)
+                return self.make(Run(self, given, context, feedback, folder))
             except Failed as failed:
                 raise QgsProcessingException(str(failed)) from failed
 
