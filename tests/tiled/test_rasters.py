@@ -57,6 +57,16 @@ def test_processes_and_a_choice_by_attribute(lidar, wanted, tmp_path):
     assert (told[-1].done, told[-1].total) == (5, 5)
 
 
+def test_a_level_surface_has_no_aspect_as_in_memory(tmp_path):
+    """It was refused, for no centre of a cell to lie on the surface."""
+    survey = ts.Survey(points=[[0, 0, 5], [10, 0, 5], [0, 10, 5], [10, 10, 5]], crs="EPSG:32616")
+    cloud = ts.tiles(ts.write(survey, tmp_path / "level.csv"), crs="EPSG:32616")
+    path = cloud.rasterize(tmp_path / "a.tif", value="aspect", spacing=2.0, workers=1)
+    wanted = ts.rasterize(ts.triangulate(survey), value="aspect", spacing=2.0)
+    np.testing.assert_array_equal(read(path), wanted.bands["aspect"])
+    assert np.isnan(wanted.bands["aspect"]).all()
+
+
 @pytest.mark.parametrize("most", range(8))
 def test_a_run_that_was_interrupted_goes_on(lidar, wanted, tmp_path, most, monkeypatch):
     path = tmp_path / "a.tif"

@@ -132,6 +132,8 @@ def compute(part: Part) -> tuple[int, dict[str, Any], list[str]]:
         return 0, {}, []
     values = compute_block(local, rows, columns, options).values
     found = save_block(part, rows, columns, values)
+    if not np.isfinite(values).any() and options.value == "aspect":  # of a level surface
+        values = compute_block(local, rows, columns, options._replace(value="slope")).values
     found["covered"] = int(np.isfinite(values).sum())
     return len(local.points), found, [name_block(part)]
 
