@@ -227,7 +227,8 @@ def _describe_no_writer(path: Path, name: str | None, kinds: Sequence[str]) -> F
     fitting = [one for one in known_formats() if one.write is not None and {*kinds} & {*one.writes}]
     suffixes = tuple(dict.fromkeys(suffix for one in fitting for suffix in one.suffixes))
     if known.write is None:
-        what = f"such a file can be read ({known.description}), not written"
+        which = f"a file '{path.suffix}'" if name is None else f"the format {shown(name)}"
+        what = f"{which} can be read ({known.description}), not written"
     else:
         what = f"{known.description} holds {_list_words(known.writes)}, not {_list_words(kinds)}"
         if "TIN" in known.writes and [*kinds] == ["Survey"]:
