@@ -33,7 +33,7 @@ from .gridding import rasterize as rasterize
 from .gridding import rasterize_canopy as rasterize_canopy
 from .gridding import rasterize_counts as rasterize_counts
 from .gridding import rasterize_heights as rasterize_heights
-from .gridding.shading import hillshade as hillshade
+from .gridding.hillshades import hillshade as hillshade
 from .ground_filter import GroundPoints as GroundPoints
 from .ground_filter import ground as ground
 from .hydrology import catchments as catchments

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from ...base.crs import CRS
     from ...tin.screening import AreaOfUse
     from .columns import Columns
-    from .headings import AxesLine
+    from .format_comments import AxesLine
 
 _POSITIVE = frozenset({"n", "e", "north", "east"})
 _NEGATIVE = frozenset({"s", "w", "o", "south", "west", "sud", "ouest", "oeste"})

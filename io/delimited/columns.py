@@ -9,13 +9,13 @@ from typing import TYPE_CHECKING
 from ...base.crs import Unit
 from ...base.errors import OptionError, ReadError
 from ...base.sentences import counted
-from .grouping import find_group
+from .coordinate_columns import find_group
 from .names import parse_name, shorten
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from .grouping import Group
+    from .coordinate_columns import Group
 
 COORDINATES = ("easting", "northing", "elevation")
 _ROLES = (*COORDINATES, "number", "description")

@@ -16,7 +16,7 @@ from ...tin.screening import describe_elevations
 from .axes import are_named_plainly
 from .cells import is_number, split_line
 from .columns import COORDINATES, find_unit_word, list_names, names_coordinates
-from .content import are_plausible_elevations, is_too_steep, measure_relief_and_extent
+from .headerless import are_plausible_elevations, is_too_steep, measure_relief_and_extent
 from .lines import COMMENT_PREFIXES
 from .vocabulary import list_words
 

@@ -19,14 +19,14 @@ from .columns import (
     list_names,
     names_coordinates,
 )
-from .headings import find_heading
+from .format_comments import find_heading
 from .lines import COMMENT_PREFIXES
 from .marks import split_header
 from .names import is_label, is_phrase, parse_name, read_words
 
 if TYPE_CHECKING:
     from ...base.arrays import Int64Array
-    from .headings import Heading
+    from .format_comments import Heading
     from .lines import TextLines
 
 GivenColumns: TypeAlias = "str | Sequence[str] | Mapping[str, str | int]"

@@ -18,7 +18,6 @@ from .columns import (
     list_meanings,
     names_coordinates,
 )
-from .content import require_no_split_decimals
 from .header import (
     TopLines,
     count_stated_columns,
@@ -26,6 +25,7 @@ from .header import (
     join_brackets,
     join_numbers,
 )
+from .headerless import require_no_split_decimals
 from .lines import COMMENT_PREFIXES
 from .marks import (
     DecimalMark,
@@ -45,7 +45,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
     from ...base.arrays import Int64Array
-    from .headings import Heading
+    from .format_comments import Heading
     from .lines import TextLines
 
 _TOP_LINES = 100

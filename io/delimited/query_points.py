@@ -15,7 +15,7 @@ from ...tin.screening import AreaOfUse
 from ..door import names_its_file
 from .axes import describe_turn, is_northing, require_one_hemisphere
 from .columns import describe_doubts
-from .grouping import find_plane_pair
+from .coordinate_columns import find_plane_pair
 from .names import parse_name
 
 if TYPE_CHECKING:

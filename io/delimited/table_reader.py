@@ -19,7 +19,6 @@ from ...tin.screening import AreaOfUse, parse_nodata
 from ..registry import StreamEnd
 from ..reprojection import Placing, is_geographic, settle_unit
 from .axes import require_no_geocentric, require_one_hemisphere, settle_axes
-from .content import find_columns_by_content
 from .findings import (
     describe_faults,
     describe_left_out,
@@ -38,7 +37,8 @@ from .findings import (
     require_one_header,
     require_unit_of_crs,
 )
-from .headings import find_axes_line, find_unit_line
+from .format_comments import find_axes_line, find_unit_line
+from .headerless import find_columns_by_content
 from .layout import LayoutOptions, continue_layout, find_layout, require_announced
 from .table import (
     describe_columns,

@@ -18,8 +18,8 @@ from ..registry import (
     taking,
 )
 from ..reprojection import Placing, find_bounds, place
-from .dem import Cells, Choice, Plan, cut_bounds, find_middle, plan_cells, read_strips
 from .header import read_header, stream_strips
+from .reading import Cells, Choice, Plan, cut_bounds, find_middle, plan_cells, read_strips
 
 if TYPE_CHECKING:
     from pathlib import Path

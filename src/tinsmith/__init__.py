@@ -21,15 +21,15 @@ register_methods(
         "Table._repr_html_": "tinsmith.terrain.drawing.html_repr.results:make_table_html",
         "TIN.plot": "tinsmith.terrain.charts.triangles:plot_tin",
         "TIN.to_crs": "tinsmith.io.reprojection.surfaces:reproject",
-        "TIN.to_geodataframe": "tinsmith.io.vector.libraries:build_frame",
-        "TIN.__geo_interface__": "tinsmith.io.vector.libraries:build_collection",
-        "TIN.__arrow_c_stream__": "tinsmith.io.vector.libraries:build_stream",
+        "TIN.to_geodataframe": "tinsmith.io.vector.interop:build_frame",
+        "TIN.__geo_interface__": "tinsmith.io.vector.interop:build_collection",
+        "TIN.__arrow_c_stream__": "tinsmith.io.vector.interop:build_stream",
     }
 )
 
 __getattr__, __dir__, __all__ = lazy_names(
     __name__,
-    {"rasterize": ".io.raster.cells"},  # reads the file of `like`, too
+    {"rasterize": ".io.raster.target_grid"},  # reads the file of `like`, too
 )
 __all__ += ["__version__"]
 

@@ -13,6 +13,7 @@ from .grids import require_cells as require_cells
 from .grids import require_overlap as require_overlap
 from .grids import to_grid as to_grid
 from .ground_heights import height_above as height_above
+from .hillshades import hillshade as hillshade
 from .operators import OPERATORS as OPERATORS
 from .operators import GridMeasure as GridMeasure
 from .operators import OperatorBand as OperatorBand
@@ -34,4 +35,3 @@ from .rasters import require_sample as require_sample
 from .relief_bands import DESCRIBED_MEANS as DESCRIBED_MEANS
 from .relief_bands import ReliefBand as ReliefBand
 from .relief_bands import describe_smooth as describe_smooth
-from .shading import hillshade as hillshade

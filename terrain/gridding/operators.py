@@ -19,7 +19,7 @@ from ...base.georeference import find_axes, find_scales
 from ...base.policies import GridOperator, NeighborhoodValue, PlaneValue, RasterValue
 from ...base.results import locate_centers
 from ...base.sentences import counted
-from ..surface import Derivatives, Light, PlaneMeasure, measure_curvatures
+from ..surface import NORTHWEST, Derivatives, Light, PlaneMeasure, measure_curvatures
 from .grids import as_parts
 
 if TYPE_CHECKING:
@@ -75,7 +75,7 @@ class GridMeasure(NamedTuple):
     value: PlaneValue | NeighborhoodValue
     operator: GridOperator | None
     computes_edges: bool = False
-    light: Light = Light(315.0, 45.0)
+    light: Light = NORTHWEST
     crs: CRS | None = None
     elevation_unit: Unit | None = None
 

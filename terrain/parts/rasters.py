@@ -17,7 +17,7 @@ from ...base.errors import OptionError
 from ...base.results import locate_centers
 from ...base.types import Bounds
 from ..gridding import GridMeasure, OperatorBand, ReliefBand, SurfaceBand, locate_edges
-from ..surface import Light, PlaneMeasure
+from ..surface import NORTHWEST, Light, PlaneMeasure
 from .surfaces import as_surface
 
 if TYPE_CHECKING:
@@ -41,7 +41,7 @@ class RasterOptions(NamedTuple):
     of_cells: GridMeasure | None = None
     """What is measured of cells and their neighbours, in place of the surface."""
     at: RasterSample = "center"
-    light: Light = Light(315.0, 45.0)
+    light: Light = NORTHWEST
     exaggeration: float = 1.0
     crs: CRS | None = None
     elevation_unit: Unit | None = None

@@ -1,4 +1,4 @@
-"""Relief: slope, aspect and light, their classes and statistics, hillshade, curvature."""
+"""Relief: slope and aspect, their classes and statistics, curvature."""
 
 from ...base.lazy import lazy_names
 

@@ -15,6 +15,7 @@ from .dissolving import (
 )
 from .geometries import as_features, as_places
 from .normals import (
+    NORTHWEST,
     Light,
     PlaneMeasure,
     as_light,
@@ -70,6 +71,7 @@ from .voids import find_border, find_surface, trace_cycles, trace_rings
 
 __all__ = [
     "CROSSED",
+    "NORTHWEST",
     "Breaks",
     "Derivatives",
     "DividedMesh",

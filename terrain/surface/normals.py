@@ -171,6 +171,10 @@ class Light(NamedTuple):
     """Above the horizon."""
 
 
+NORTHWEST = Light(315.0, 45.0)
+"""The light of maps, and of whatever is not told of another."""
+
+
 def as_light(azimuth: Any, altitude: Any) -> Light:
     """Return a light, or say which number is out of range."""
     return Light(
@@ -190,7 +194,7 @@ def shade(upward: Float64Array, light: Light) -> UInt8Array:
 
     Examples
     --------
-    >>> shade(np.array([[0.0, 0.0, 2.0]]), Light(315.0, 45.0))
+    >>> shade(np.array([[0.0, 0.0, 2.0]]), NORTHWEST)
     array([181], dtype=uint8)
     """
     turn, rise = math.radians(light.azimuth), math.radians(light.altitude)

@@ -10,7 +10,7 @@ import numpy as np
 from ...base import optional
 from ...tin.topology import edges_at
 from ..drawing import choose_origin, make_legend, palette
-from ..surface import Light, compute_normals, measure_aspects, measure_slopes
+from ..surface import NORTHWEST, Light, compute_normals, measure_aspects, measure_slopes
 
 if TYPE_CHECKING:
     from ...base.arrays import BoolArray, Float32Array, Float64Array, Int32Array
@@ -34,7 +34,6 @@ _CLEAR_SIDE = 16.0
 """Side of a triangle, in design pixels, from which its edges are drawn at full strength."""
 
 _AMBIENT = 0.36
-NORTHWEST = Light(315.0, 45.0)
 """The light of printed maps."""
 
 _SUN = 0.58

@@ -9,7 +9,7 @@ import numpy as np
 
 from ...tin import Bounds
 from ..drawing import NORTH_ARROW, Palette, choose_ticks, format_number, make_scale_bar
-from .actors import NORTHWEST
+from ..surface import NORTHWEST
 from .camera import View, measure_pixels_per_unit, name_direction, project_ground_axes
 from .overlay import fit_title, shorten
 

@@ -12,7 +12,7 @@ from ...base.products import product
 from ...base.sentences import counted
 from ..drawing import draw_north_up, interpolate_tints
 from ..drawing.html_repr.frame import SIZE, describe_bounds, name_crs, name_units, write_html
-from .actors import NORTHWEST
+from ..surface import NORTHWEST
 from .relief import choose_exaggeration, measure_relief
 
 if TYPE_CHECKING:

@@ -10,8 +10,7 @@ from ...base.checks import as_flag, as_number, is_finite_number, is_whole_number
 from ...base.errors import OptionError, choice
 from ...base.policies import Tint
 from ..drawing import BACKGROUNDS, UNTITLED, Palette, choose_palette, parse_hex, parse_title
-from ..surface import Light
-from .actors import NORTHWEST
+from ..surface import NORTHWEST, Light
 from .camera import VIEWS, View
 
 if TYPE_CHECKING:

@@ -467,7 +467,8 @@ def test_format_that_cannot_be_written_is_refused_by_name(folder):
     Path("in.csv").write_text(SQUARE)
     arguments = ["build", "in.csv", "-o", "out.ply", "--output-format", "raster"]
     result = CliRunner().invoke(main, arguments)
-    assert result.stderr.startswith("Error: Cannot write 'out.ply': the format 'raster' can be read (")
+    said = "Error: Cannot write 'out.ply': the format 'raster' can be read ("
+    assert result.stderr.startswith(said)
     assert "), not written; a TIN can be written to .csv, " in result.stderr
     assert not Path("out.ply").exists()
 

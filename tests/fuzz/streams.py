@@ -14,7 +14,7 @@ import numpy as np
 
 import tinsmith as ts
 from tinsmith.io.delimited import survey_text
-from tinsmith.io.raster import dem
+from tinsmith.io.raster import reading
 from tinsmith.io.streaming import stream_points
 
 from .campaign import Campaign, Case
@@ -137,16 +137,16 @@ WRITERS = {
 
 
 def examine(case: Case) -> str:
-    before = survey_text.BLOCK_BYTES, dem._STRIP_CELLS
+    before = survey_text.BLOCK_BYTES, reading._STRIP_CELLS
     survey_text.BLOCK_BYTES = case["block"]
-    dem._STRIP_CELLS = max(1, case["block"] // 20)
+    reading._STRIP_CELLS = max(1, case["block"] // 20)
     try:
         with tempfile.TemporaryDirectory() as folder:
             writer, suffix = WRITERS[case["kind"]]
             path = Path(folder, f"points{suffix}")
             return compare(path, writer(case, path), case)
     finally:
-        survey_text.BLOCK_BYTES, dem._STRIP_CELLS = before
+        survey_text.BLOCK_BYTES, reading._STRIP_CELLS = before
 
 
 def compare(path: Path, options: dict[str, Any], case: Case) -> str:

@@ -212,7 +212,7 @@ def test_a_mosaic_of_a_large_text_is_not_parsed(tmp_path, monkeypatch):
 
 @pytest.mark.parametrize("size", [(100_000, 100_000), (2**31 - 1, 2**31 - 1), (1, 2**31 - 1)])
 def test_a_raster_of_more_cells_than_memory_is_refused_at_once(tmp_path, size, monkeypatch):
-    from tinsmith.io.raster import dem as raster
+    from tinsmith.io.raster import reading as raster
 
     monkeypatch.setattr(raster, "measure_free_memory", lambda: 1 << 30)
     path = tmp_path / "bomb.vrt"

@@ -52,7 +52,7 @@ def list_product_options(function: str, names: str, **words: str) -> list[Decora
     Parameters
     ----------
     function : str
-        Such as ``"terrain.gridding.shading.hillshade"``.
+        Such as ``"terrain.gridding.hillshades.hillshade"``.
     names : str
         The options, with blanks between them.
     **words : str

@@ -5,7 +5,7 @@ import pytest
 from support.streams import gather, require_same
 
 import tinsmith as ts
-from tinsmith.io.raster import dem
+from tinsmith.io.raster import reading
 from tinsmith.io.streaming import describe_source, read_box, stream_points
 
 rasterio = pytest.importorskip("rasterio")
@@ -36,7 +36,7 @@ def write(path, heights=HEIGHTS, crs=UTM, nodata=None, transform=None, **more):
 
 @pytest.fixture(params=[30, 200, 10**6])
 def strips(request, monkeypatch):
-    monkeypatch.setattr(dem, "_STRIP_CELLS", request.param)
+    monkeypatch.setattr(reading, "_STRIP_CELLS", request.param)
 
 
 def with_voids():
@@ -161,7 +161,7 @@ def test_a_box_of_random_places(tmp_path):
 
 def test_more_cells_than_memory_holds_are_given_in_chunks(tmp_path, monkeypatch):
     path = write(tmp_path / "dem.tif")
-    monkeypatch.setattr(dem, "measure_free_memory", lambda: 48 * 800)
+    monkeypatch.setattr(reading, "measure_free_memory", lambda: 48 * 800)
     with pytest.raises(ts.ReadError, match="800 are the most"):
         ts.read(path)
     with stream_points(path, chunk_points=100) as stream:

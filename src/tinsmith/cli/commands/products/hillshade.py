@@ -14,7 +14,7 @@ from ...product_options import product_options
 
 @file_command
 @product_options(
-    "terrain.gridding.shading.hillshade", "spacing azimuth altitude exaggeration smooth"
+    "terrain.gridding.hillshades.hillshade", "spacing azimuth altitude exaggeration smooth"
 )
 @surface_options()
 def hillshade(file: Path, job: Job, **asked: Any) -> None:

@@ -81,7 +81,7 @@ def test_every_cell_has_the_light_of_the_triangle_at_its_centre():
 def test_blocks_are_seamless(monkeypatch):
     tin = plane(0.3, -0.2)
     whole = ts.hillshade(tin, spacing=0.25).bands["hillshade"]
-    monkeypatch.setattr("tinsmith.terrain.gridding.shading._BLOCK_CELLS", 100)
+    monkeypatch.setattr("tinsmith.terrain.gridding.hillshades._BLOCK_CELLS", 100)
     np.testing.assert_array_equal(ts.hillshade(tin, spacing=0.25).bands["hillshade"], whole)
 
 

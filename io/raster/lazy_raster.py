@@ -17,9 +17,9 @@ from ...tin.screening import parse_nodata
 from ..door import names_its_file
 from ..isolated import is_pipe, require_local, require_readable
 from ..reprojection import place
-from .dem import choose_elevations, find_elevation_unit, find_middle
 from .header import Header, read_header, stream_strips
 from .meaning import settle_axes
+from .reading import choose_elevations, find_elevation_unit, find_middle
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -12,7 +12,7 @@ import pytest
 
 import tinsmith as ts
 from tinsmith.io import CrsError, OptionError, ReadError, read
-from tinsmith.io.raster import dem as reading
+from tinsmith.io.raster import reading
 
 rasterio = pytest.importorskip("rasterio")
 pyproj = pytest.importorskip("pyproj")
@@ -146,7 +146,7 @@ def test_band_by_number(raster):
 
 
 def test_strips_join_without_a_seam(raster, monkeypatch):
-    from tinsmith.io.raster import dem as module
+    from tinsmith.io.raster import reading as module
 
     array = heights(61, 37)
     array[10:20, 5:9] = -1

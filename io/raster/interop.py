@@ -16,9 +16,9 @@ from ...base.checks import require_type
 from ...base.errors import OptionError
 from ...base.notes import naming_file
 from ...base.results import Raster
-from .dem import Choice, make_survey
 from .gdal_child import cut_strips, describe
 from .header import Affine, Header
+from .reading import Choice, make_survey
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence

@@ -8,7 +8,7 @@ import pytest
 import tinsmith as ts
 from tinsmith.base.crs import CRS
 from tinsmith.io import ReadError
-from tinsmith.io.delimited.content import (
+from tinsmith.io.delimited.headerless import (
     are_plausible_elevations,
     find_columns_by_content,
     is_too_steep,

@@ -10,7 +10,7 @@ import pytest
 from tinsmith import OptionError, ReadError
 from tinsmith.base.crs import CRS, FOOT, METRE, US_SURVEY_FOOT
 from tinsmith.io.isolated import Limits, limits
-from tinsmith.io.raster import dem
+from tinsmith.io.raster import reading
 from tinsmith.tin import Bounds
 
 PATH = Path("ground.tif")
@@ -21,17 +21,17 @@ def header(**given):
     usual = {
         "path": PATH, "count": 2, "subdatasets": [], "colours": ["gray", "undefined"],
         "dtypes": ["float32", "float32"], "width": 7, "height": 5,
-        "transform": dem.Affine(2.0, 0.0, 100.0, 0.0, -3.0, 500.0), "block_height": 1,
+        "transform": reading.Affine(2.0, 0.0, 100.0, 0.0, -3.0, 500.0), "block_height": 1,
         "block_width": 7, "scales": [1.0, 1.0], "offsets": [0.0, 0.0], "units": [None, None],
         "crs": None, "limits": Limits(5.0, 1 << 30),
     }  # fmt: skip
-    return dem.Header(**{**usual, "meanings": [], "tags": {}, **given})
+    return reading.Header(**{**usual, "meanings": [], "tags": {}, **given})
 
 
 def choose_cells(stride=1, **part):
     part = {"window": None, "cells": None, **part}
-    choice = dem.Choice(band=None, **part, stride=stride, nodata=None, fill=False)
-    return dem._choose_cells(header(), choice)
+    choice = reading.Choice(band=None, **part, stride=stride, nodata=None, fill=False)
+    return reading._choose_cells(header(), choice)
 
 
 def sentence_of(kind, function, *arguments):
@@ -46,7 +46,7 @@ def sentence_of(kind, function, *arguments):
 @pytest.mark.parametrize("seed", range(5))
 def test_the_inverse_leads_back(seed):
     rng = np.random.default_rng(seed)
-    affine = dem.Affine(*rng.uniform(-9, 9, 6))
+    affine = reading.Affine(*rng.uniform(-9, 9, 6))
     column, row = rng.uniform(0, 100, (2, 20))
     there = affine.apply(column, row)
     np.testing.assert_allclose(
@@ -65,15 +65,15 @@ def test_the_inverse_leads_back(seed):
     ],
 )
 def test_the_bounds_hold_all_cells(affine, bounds):
-    assert header(transform=dem.Affine(*map(float, affine))).bounds == bounds
+    assert header(transform=reading.Affine(*map(float, affine))).bounds == bounds
 
 
 def test_centres_lie_half_a_cell_in_and_the_middle_in_the_middle():
     raster = header()
-    x, y = dem._compute_centres(raster, np.array([0, 6]), np.array([0, 2, 4]))
+    x, y = reading._compute_centres(raster, np.array([0, 6]), np.array([0, 2, 4]))
     assert x.tolist() == [[101, 113]] * 3
     assert y.T.tolist() == [[498.5, 492.5, 486.5]] * 2
-    assert dem.find_middle(raster).tolist() == [[107.0, 492.5, 0.0]]
+    assert reading.find_middle(raster).tolist() == [[107.0, 492.5, 0.0]]
 
 
 # -------------------------------------------------------------------- cells
@@ -83,10 +83,10 @@ def test_centres_lie_half_a_cell_in_and_the_middle_in_the_middle():
 @pytest.mark.parametrize(("row", "height"), [(0, 20), (3, 11), (5, 7)])
 @pytest.mark.parametrize("block", [1, 2, 3, 50])
 def test_strips_hold_every_row_wanted_once(monkeypatch, stride, row, height, block):
-    monkeypatch.setattr(dem, "_STRIP_CELLS", 12)
-    cells = dem.Cells(2, row, 4, height, stride)
+    monkeypatch.setattr(reading, "_STRIP_CELLS", 12)
+    cells = reading.Cells(2, row, 4, height, stride)
     raster = header(height=40, block_height=block)
-    strips = dem._cut_into_strips(raster, cells)
+    strips = reading._cut_into_strips(raster, cells)
     wanted = list(range(row, row + height, stride))
     assert [one for strip in strips for one in strip.tolist()] == wanted
     assert cells.columns.tolist() == list(range(2, 6, stride))
@@ -98,9 +98,9 @@ def test_strips_hold_every_row_wanted_once(monkeypatch, stride, row, height, blo
     [(1, 4, 3), (1, 5, 2), (1, 12, 1), (1, 13, 1), (2, 3, 4), (2, 4, 2), (5, 4, 5), (0, 4, 3)],
 )
 def test_strips_are_whole_blocks_of_some_cells(monkeypatch, block, width, height):
-    monkeypatch.setattr(dem, "_STRIP_CELLS", 12)
-    cells = dem.Cells(0, 0, width, 9, 1)
-    assert dem._choose_strip_height(header(block_height=block), cells) == height
+    monkeypatch.setattr(reading, "_STRIP_CELLS", 12)
+    cells = reading.Cells(0, 0, width, 9, 1)
+    assert reading._choose_strip_height(header(block_height=block), cells) == height
 
 
 @pytest.mark.parametrize(
@@ -168,13 +168,13 @@ def test_cells_given_as_a_window_are_refused_with_the_option_to_use(cells):
 
 
 def test_a_window_that_may_be_meant_as_cells_is_told():
-    raster = header(transform=dem.Affine(1.0, 0.0, 0.0, 0.0, -1.0, 5.0))
+    raster = header(transform=reading.Affine(1.0, 0.0, 0.0, 0.0, -1.0, 5.0))
     choice = {"band": None, "cells": None, "stride": None, "nodata": None, "fill": False}
     for window, is_stated in [((1, 1, 3, 4), True), ((1, 1, 3.0, 4), False), ((1, 1, 7, 5), False),
                             (Bounds(1, 1, 3, 4), False), (None, False)]:  # fmt: skip
-        notes = dem._describe_window(raster, dem.Choice(window=window, **choice))
+        notes = reading._describe_window(raster, reading.Choice(window=window, **choice))
         assert bool(notes) == is_stated
-    notes = dem._describe_window(raster, dem.Choice(window=(1, 1, 3, 4), **choice))
+    notes = reading._describe_window(raster, reading.Choice(window=(1, 1, 3, 4), **choice))
     assert notes == [
         "The window 1, 1, 3, 4 is in coordinates (west, south, east, north); cells by column, row, "
         "width and height are the option `cells`."
@@ -224,12 +224,12 @@ def test_a_stride_leaves_two_rows_and_columns_at_least(cells, stride, most):
 
 @pytest.mark.parametrize(("width", "height", "stride"), [(10, 10, 1), (21, 19, 2), (30, 28, 3)])
 def test_no_more_cells_are_read_than_memory_holds(monkeypatch, width, height, stride):
-    cells = dem.Cells(0, 0, width, height, stride)
+    cells = reading.Cells(0, 0, width, height, stride)
     count = -(-width // stride) * -(-height // stride)
-    monkeypatch.setattr(dem, "measure_free_memory", lambda: 48 * count)
-    dem._require_few_cells(cells)
-    monkeypatch.setattr(dem, "measure_free_memory", lambda: 48 * count - 1)
-    said = sentence_of(ReadError, dem._require_few_cells, cells)
+    monkeypatch.setattr(reading, "measure_free_memory", lambda: 48 * count)
+    reading._require_few_cells(cells)
+    monkeypatch.setattr(reading, "measure_free_memory", lambda: 48 * count - 1)
+    said = sentence_of(ReadError, reading._require_few_cells, cells)
     assert said == (
         f"the file: {count:,} cells are to be read, and {count - 1:,} are the most that 0.0 "
         "GiB of memory can hold: read a part of it (window) or every n-th row and column (stride)."
@@ -237,9 +237,9 @@ def test_no_more_cells_are_read_than_memory_holds(monkeypatch, width, height, st
 
 
 def test_no_more_cells_are_read_than_a_tin_holds(monkeypatch):
-    monkeypatch.setattr(dem, "measure_free_memory", lambda: 1 << 60)
-    dem._require_few_cells(dem.Cells(0, 0, 2**31 - 1, 1, 1))
-    said = sentence_of(ReadError, dem._require_few_cells, dem.Cells(0, 0, 2**31, 1, 1))
+    monkeypatch.setattr(reading, "measure_free_memory", lambda: 1 << 60)
+    reading._require_few_cells(reading.Cells(0, 0, 2**31 - 1, 1, 1))
+    said = sentence_of(ReadError, reading._require_few_cells, reading.Cells(0, 0, 2**31, 1, 1))
     assert "2,147,483,648 cells are to be read, and 2,147,483,647 are the most that a TIN" in said
 
 
@@ -263,30 +263,31 @@ def test_free_memory_is_what_the_system_tells(monkeypatch, tmp_path):
 
 def test_a_strip_is_scaled_after_its_mask_and_before_nodata_of_the_caller():
     raster = header(scales=[1.0, 0.5], offsets=[0.0, 10.0])
-    cells = dem.Cells(0, 0, 3, 2, 1, Bounds(100.0, 494.0, 104.0, 500.0))
+    cells = reading.Cells(0, 0, 3, 2, 1, Bounds(100.0, 494.0, 104.0, 500.0))
     values = np.array([[1, 2, 3], [4, 5, 6]], np.int16)
     valid = np.array([[255, 0, 255], [1, 255, 255]], np.uint8)
     arrays = {"values": values, "valid": valid}
-    plan = dem.Plan(raster, 2, cells, None, None, None, np.array([12.0]), [])
-    points, numbers, keep, missing = dem._read_strip(plan, cells, np.array([0, 1]), arrays)
+    plan = reading.Plan(raster, 2, cells, None, None, None, np.array([12.0]), [])
+    points, numbers, keep, missing = reading._read_strip(plan, cells, np.array([0, 1]), arrays)
     assert numbers.tolist() == [0, raster.width + 1]
     assert points.tolist() == [[101, 498.5, 10.5], [103, 495.5, 12.5]]
     assert keep.tolist() == [[True, False, False], [False, True, False]]
     assert missing == 2  # one by the mask, one by the caller's word; the last column is outside
     plan = plan._replace(band=1, marks=np.array([]))
-    plain = dem._read_strip(plan, cells, np.array([0, 1]), arrays).points
+    plain = reading._read_strip(plan, cells, np.array([0, 1]), arrays).points
     assert plain[:, 2].tolist() == [1, 4, 5]
 
 
 def test_elevations_that_scale_makes_infinite_are_counted():
     points = np.array([[1, 2, 3], [4, 5, np.inf], [6, 7, np.nan]])
-    said = sentence_of(ReadError, dem._require_finite_centres, points, 3)
+    said = sentence_of(ReadError, reading._require_finite_centres, points, 3)
     assert said == (
         "the file: 2 cells of band 3 would have an elevation that is not finite (first at 4, "
         "5): its scale or offset is wrong."
     )
-    assert "1 cell of band 1" in sentence_of(ReadError, dem._require_finite_centres, points[:2], 1)
-    dem._require_finite_centres(points[:1], 1)
+    said = sentence_of(ReadError, reading._require_finite_centres, points[:2], 1)
+    assert "1 cell of band 1" in said
+    reading._require_finite_centres(points[:1], 1)
 
 
 # ----------------------------------------------------------------- the band
@@ -317,11 +318,11 @@ BANDS = "Invalid band {}: it must be one of the bands 1 to 2 of the file."
     ],
 )
 def test_a_band_that_is_not_there_is_refused(given, band, kind, sentence):
-    assert sentence_of(kind, dem.choose_band, header(**given), band) == sentence
+    assert sentence_of(kind, reading.choose_band, header(**given), band) == sentence
 
 
 def test_the_first_band_is_the_default():
-    assert [dem.choose_band(header(), band) for band in (None, 1, 2)] == [1, 1, 2]
+    assert [reading.choose_band(header(), band) for band in (None, 1, 2)] == [1, 1, 2]
 
 
 @pytest.mark.parametrize(
@@ -333,19 +334,19 @@ def test_the_first_band_is_the_default():
         ({"colours": ["red", "gray"]}, 2, False, None),
         ({"dtypes": ["complex64", "f4"]}, 1, False, "band 1 holds complex numbers, no elevations."),
         ({"dtypes": ["complex64", "f4"]}, 2, False, None),
-        ({"transform": dem.Affine(1, 0, 0, 0, 1, 0)}, 1, False, "has no georeference"),
-        ({"transform": dem.Affine(2, 4, 0, 1, 2, 0)}, 1, False, "in which a cell has no size"),
-        ({"transform": dem.Affine(2, 0, np.inf, 0, 1, 0)}, 1, False, "or none that is finite."),
-        ({"transform": dem.Affine(1e200, 0, 0, 0, 1e200, 0)}, 1, False, "none that is finite."),
-        ({"transform": dem.Affine(0, 2, 0, 3, 0, 0)}, 1, False, None),
+        ({"transform": reading.Affine(1, 0, 0, 0, 1, 0)}, 1, False, "has no georeference"),
+        ({"transform": reading.Affine(2, 4, 0, 1, 2, 0)}, 1, False, "in which a cell has no size"),
+        ({"transform": reading.Affine(2, 0, np.inf, 0, 1, 0)}, 1, False, "or none that is finite."),
+        ({"transform": reading.Affine(1e200, 0, 0, 0, 1e200, 0)}, 1, False, "none that is finite."),
+        ({"transform": reading.Affine(0, 2, 0, 3, 0, 0)}, 1, False, None),
     ],
 )
 def test_what_has_no_elevations_or_no_place_is_refused(given, band, is_stated, words):
     raster = header(**given)
     if words is None:
-        dem.require_elevation_band(raster, band, is_stated)
+        reading.require_elevation_band(raster, band, is_stated)
     else:
-        said = sentence_of(ReadError, dem.require_elevation_band, raster, band, is_stated)
+        said = sentence_of(ReadError, reading.require_elevation_band, raster, band, is_stated)
         assert words in said
 
 
@@ -373,7 +374,7 @@ FEET_UP = CRS.of("EPSG:32616+6360")
 )
 def test_the_unit_is_that_of_band_axis_or_caller(word, crs, declared, unit, n_notes):
     raster = header(units=[None, word])
-    found, notes = dem.find_elevation_unit(raster, 2, crs, declared)
+    found, notes = reading.find_elevation_unit(raster, 2, crs, declared)
     assert (found, len(notes)) == (unit, n_notes)
     if notes:
         assert notes == ["The unit of band 2, 'counts', is no length: the elevations have none."]
@@ -381,7 +382,7 @@ def test_the_unit_is_that_of_band_axis_or_caller(word, crs, declared, unit, n_no
 
 def test_two_units_are_refused_until_one_is_declared():
     raster = header(units=["m", None])
-    said = sentence_of(ReadError, dem.find_elevation_unit, raster, 1, FEET_UP, None)
+    said = sentence_of(ReadError, reading.find_elevation_unit, raster, 1, FEET_UP, None)
     assert said == (
         "the file gives its elevations two units: metre (of band 1) and US survey foot (of the "
         "vertical axis of its CRS); declare the one that is right."

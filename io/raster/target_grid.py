@@ -12,7 +12,7 @@ from ...base.crs import CRS
 from ...terrain.gridding import Cells, to_grid
 from ..door import names_its_file
 from ..isolated import open_ordinary_file, require_local, require_readable
-from .dem import read_georeference
+from .reading import read_georeference
 
 if TYPE_CHECKING:
     from ...terrain import Raster
