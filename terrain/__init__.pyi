@@ -52,9 +52,11 @@ from .isolines import contour_bands as contour_bands
 from .isolines import contour_labels as contour_labels
 from .isolines import contours as contours
 from .plans import Plan as Plan
+from .plans import ProfileSheets as ProfileSheets
 from .plans import SectionSheets as SectionSheets
 from .plans import VolumeReport as VolumeReport
 from .plans import plan as plan
+from .plans import profile_sheets as profile_sheets
 from .plans import section_sheets as section_sheets
 from .plans import volume_report as volume_report
 from .relief.classes import aspect_classes as aspect_classes

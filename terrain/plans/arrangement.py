@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from ...base.arrays import AnyArray, BoolArray, Float64Array
     from ...base.crs import Unit
     from .footprint import Footprint
-    from .papers import Layout
+    from .paper import Layout
 
 MOST_SHEETS = 500
 OVERLAP = 8.0

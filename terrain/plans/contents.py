@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -16,32 +16,20 @@ from ...tin.topology import find_offsets
 from ..drawing import EDGE_KINDS, LineEdges, find_line_edges, join_edges, round_down
 from ..isolines import contours, elevation_range
 from .clipping import Paths
-from .lettering import clean_text
+from .marks import gather_marks
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
-
     from ...base.arrays import AnyArray, Float64Array
     from ...base.georeference import Label as AxisLabel
     from ...base.results import Features
     from ...tin import TIN, Survey
     from .footprint import Footprint
+    from .marks import Marking, Marks
+    from .stations import Stationed
 
 _MOST_LEVELS = 2000
 """More contours than a sheet has room for: the interval was given in another unit, or by a slip."""
 _LEVELS = 12
-_MOST_DECIMALS = 3
-"""Of elevations of points, which an instrument does not measure finer."""
-
-
-class Marks(NamedTuple):
-    """Points to be drawn."""
-
-    places: Float64Array
-    """(n, 2)."""
-    numbers: list[str]
-    elevations: list[str]
-    """What stands beside each; both empty if nothing does."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,7 +44,10 @@ class Contents:
     outline: Paths
     """The boundary of the surface where no line runs along it."""
     footprint: Footprint
-    marks: Marks | None
+    marks: tuple[Marks, ...]
+    label_size: float
+    """Height of digits beside them, millimetres."""
+    axis: Stationed | None
     axes: tuple[AxisLabel, AxisLabel]
     """How coordinates across and up the map are written."""
     notes: tuple[str, ...]
@@ -68,17 +59,18 @@ def gather_contents(
     *,
     interval: float | None,
     smooth: float | None,
-    points: str,
+    marking: Marking,
     survey: Survey | None,
+    axis: Stationed | None,
 ) -> Contents:
     """Trace contours, and gather lines and points.
 
-    Raises OptionError if an interval makes too many levels, or points have no numbers. Raises
+    Raises OptionError if an interval makes too many levels, or points have no such texts. Raises
     CrsError if the survey is in another CRS.
     """
     chosen = choose_interval(tin) if interval is None else interval
     lines = _trace(tin, chosen, smooth)
-    notes = list(lines.notes)
+    notes = [*lines.notes, *marking.notes, *(axis.notes if axis else ())]
     if survey is not None:
         notes += require_same_crs(survey.crs, tin.crs, "the survey")
     linework, outline = _gather_lines(tin)
@@ -88,7 +80,9 @@ def gather_contents(
         linework=linework,
         outline=outline,
         footprint=footprint,
-        marks=None if points == "none" else _gather_marks(tin, survey, points),
+        marks=gather_marks(tin, survey, marking),
+        label_size=marking.size,
+        axis=axis,
         axes=label_axes(tin.crs),
         notes=tuple(notes),
     )
@@ -152,48 +146,6 @@ def find_lines(tin: TIN) -> LineEdges:
 def _chain_edges(points: Float64Array, pairs: AnyArray) -> Paths:
     vertices, counts = join_edges(pairs)
     return Paths.whole(points[vertices, :2], find_offsets(counts))
-
-
-# ---------------------------------------------------------------- points
-
-
-def _gather_marks(tin: TIN, survey: Survey | None, points: str) -> Marks:
-    numbers = () if survey is None else survey.attributes.get("number", ())
-    has_numbers = points in ("numbers", "both")
-    if has_numbers and len(numbers) == 0:
-        raise OptionError(
-            "points", points, "'marks' or 'elevations' where there is no survey with point numbers"
-        )
-    xyz = tin.points if survey is None else survey.points
-    known = [one.elevation_unit for one in (tin, survey) if one is not None]
-    if None not in known and known[0] != known[-1]:
-        raise OptionError(
-            "survey",
-            f"with elevations in {known[-1]}",
-            f"one with elevations in {known[0]}, as those of the surface",
-        )
-    return Marks(
-        xyz[:, :2],
-        [clean_text(str(number)) for number in numbers] if has_numbers else [],
-        write_elevations(xyz[:, 2]) if points in ("elevations", "both") else [],
-    )
-
-
-def write_elevations(elevations: Iterable[float]) -> list[str]:
-    """Write elevations with the decimals that they need, at most three, the same number for all.
-
-    Examples
-    --------
-    >>> write_elevations([318.5, 320.25])
-    ['318.50', '320.25']
-    """
-    values = np.asarray(elevations, np.float64)
-    for decimals in range(_MOST_DECIMALS):
-        if np.array_equal(values.round(decimals), values):
-            break
-    else:
-        decimals = _MOST_DECIMALS
-    return [f"{value + 0.0:.{decimals}f}" for value in values.tolist()]
 
 
 def describe_count(tin: TIN, survey: Survey | None) -> str:

@@ -9,16 +9,14 @@ import numpy as np
 
 from ...base.georeference import label_axes
 from ..drawing import palette, round_down
-from .canvas import Pen
 from .clipping import clip_paths, join_paths
-from .lettering import measure_text
+from .paper import Drawable, Pen, measure_text
 from .windows import turn
 
 if TYPE_CHECKING:
     from ...base.arrays import BoolArray, Float64Array
     from ...base.georeference import Label as AxisLabel
     from ...tin import Bounds
-    from .canvas import Canvas
     from .windows import Window
 
     Axes = tuple[AxisLabel, AxisLabel]
@@ -145,7 +143,7 @@ def _find_middle(label: Label, box: Bounds) -> float:
 # ---------------------------------------------------------------- drawing
 
 
-def draw_grid(canvas: Canvas, window: Window, style: str, axes: Axes) -> None:
+def draw_grid(canvas: Drawable, window: Window, style: str, axes: Axes) -> None:
     """Draw the grid within the frame, ticks and labels around it."""
     if style == "none":
         return
@@ -177,7 +175,7 @@ def _make_tick(label: Label) -> Float64Array:
     return np.array([label.place, label.place + _TICK_LENGTH * outward])
 
 
-def _write_label(canvas: Canvas, label: Label, box: Bounds) -> None:
+def _write_label(canvas: Drawable, label: Label, box: Bounds) -> None:
     middle, beside = _find_middle(label, box), _TICK_LENGTH + 0.6
     is_level = label.side in ("bottom", "top")
     place = {

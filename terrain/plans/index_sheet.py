@@ -12,9 +12,9 @@ from .mapping import MATCH_PEN, Map
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from .canvas import Canvas
     from .contents import Contents
     from .mapping import Drawn
+    from .paper import Drawable
     from .windows import Window
 
 _LEAST, _LARGEST = 1.6, 5.0
@@ -22,7 +22,7 @@ _LEAST, _LARGEST = 1.6, 5.0
 
 
 def draw_index(
-    canvas: Canvas,
+    canvas: Drawable,
     window: Window,
     contents: Contents,
     maps: Mapping[int, Window],

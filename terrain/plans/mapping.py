@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from collections import Counter
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -12,15 +13,18 @@ from ...base import optional
 from ...base.results import Features
 from ..drawing import palette
 from ..isolines import contour_labels, count_decimals
-from .canvas import Canvas, Pen
 from .clipping import Paths, clip_paths, join_paths
 from .grid import draw_grid
-from .lettering import Room, measure_text, outline_text
+from .paper import CAPITAL, Drawable, Pen, Room, measure_text, outline_text
 from .windows import outline, turn
 
 if TYPE_CHECKING:
-    from ...base.arrays import AnyArray, Float64Array
-    from .contents import Contents, Marks
+    from collections.abc import Sequence
+
+    from ...base.arrays import AnyArray, BoolArray, Float64Array, Int64Array
+    from .contents import Contents
+    from .marks import Marks
+    from .stations import Stationed
     from .windows import MatchLine, Window
 
 CONTOUR_PENS = {
@@ -35,15 +39,23 @@ LINE_PENS = {
     "water": Pen(palette.LINES["water"], 0.35),
 }
 OUTLINE_PEN = Pen(palette.OUTLINE_PLAN, 0.25)
+AXIS_PEN = Pen(palette.CURVES[1], 0.35, (8.0, 1.5, 1.0, 1.5))
 MATCH_PEN = Pen(palette.MATCH_LINE, 0.5, (6.0, 2.0))
 _FRAME_PEN = Pen(palette.INK_PLAN, 0.35)
 _MARK_PEN = Pen(palette.INK_PLAN, 0.18)
 _MARK = 0.7
 """Half a point's cross, millimetres."""
+ARMS = {
+    "point": _MARK * np.array([[(-1, 0), (1, 0)], [(0, -1), (0, 1)]]),
+    "spot height": 0.5 * np.array([[(-1, -1), (1, 1)], [(-1, 1), (1, -1)]]),
+}
+"""Lines of marks, (2, 2, 2), millimetres from the point."""
+_NAMES = {"point": "points", "spot height": "spots"}
+_TICK = 1.3
+"""Half a tick of a station, millimetres."""
 _LETTERS = 2.0
-_POINT_LETTERS = 1.5
-_CAPITAL = 0.73
-"""Height of digits by the size of letters."""
+_GAP = 0.3
+"""Between a mark and its label."""
 _SPACING = 110.0
 """Millimetres between the labels of a contour."""
 _MATCH_INSET = 4.0
@@ -55,11 +67,11 @@ class Drawn:
     """What was drawn on a sheet, for its legend and the notes."""
 
     kinds: set[str]
-    """Of "contour", "index contour", "water area", "outline", "point", "match line", and kinds of
-    lines.
+    """Of "contour", "index contour", "water area", "outline", "point", "spot height", "match line",
+    and kinds of lines.
     """
-    crowded: int = 0
-    """Points whose labels had no room."""
+    crowded: Counter[str] = field(default_factory=Counter)
+    """Points and stations whose labels had no room, and spot heights that had none, by kinds."""
 
 
 class _Text(NamedTuple):
@@ -67,13 +79,13 @@ class _Text(NamedTuple):
     rotation: float
     text: str
     corners: Float64Array
-    source: int  # the contour that it is of
+    source: int  # the contour, or the station, that it is of
 
 
 class Map:
     """The ground within the frame of a window, drawn on a sheet layer by layer."""
 
-    def __init__(self, canvas: Canvas, window: Window, contents: Contents) -> None:
+    def __init__(self, canvas: Drawable, window: Window, contents: Contents) -> None:
         self._canvas = canvas
         self._window = window
         self._contents = contents
@@ -90,10 +102,11 @@ class Map:
         draw_grid(self._canvas, self._window, grid, self._contents.axes)
         for match in self._window.matches:  # first, for their texts to have room
             self._draw_match(match, numbers[match.window])
+        stations = self._place_stations()
         self._draw_contours(labeling)
         self._draw_linework()
-        if self._contents.marks is not None:
-            self._draw_marks(self._contents.marks)
+        self._draw_stations(stations)
+        self._draw_marks()
         self._draw_frame()
         return self.drawn
 
@@ -102,6 +115,7 @@ class Map:
         self._fill_water()
         draw_grid(self._canvas, self._window, grid, self._contents.axes)
         self._draw_linework()
+        self._draw_stations([])
         self._draw_frame()
         return self.drawn
 
@@ -109,6 +123,55 @@ class Map:
         self._draw_paths(self._contents.outline, OUTLINE_PEN, "outline")
         for kind, paths in self._contents.linework.items():
             self._draw_paths(paths, LINE_PENS[kind], kind)
+
+    def _place_stations(self) -> list[_Text]:
+        """Take room for the stations of the axis, to its left if there is room, before contours."""
+        axis, window = self._contents.axis, self._window
+        if axis is None:
+            return []
+        seen, normals = self._find_ticks(axis)
+        texts = []
+        for number in np.flatnonzero(seen).tolist() if axis.texts else ():
+            text, normal = axis.texts[number], normals[number]
+            width = measure_text(text, _LETTERS)
+            rotation = turn_upright(math.degrees(math.atan2(normal[1], normal[0])))
+            place = window.to_paper(axis.places[number])
+            for side in (1.0, -1.0):
+                x, y = (place + side * (_TICK + 0.6 + width / 2) * normal).tolist()
+                corners = outline_text((x, y), width, CAPITAL * _LETTERS, rotation)
+                if self._room.take(corners):
+                    texts.append(_Text((x, y), rotation, text, corners, number))
+                    break
+            else:
+                self.drawn.crowded["station"] += 1
+        return texts
+
+    def _find_ticks(self, axis: Stationed) -> tuple[BoolArray, Float64Array]:
+        """Tell which stations are within the frame, and return what is across the axis on paper."""
+        places = self._window.to_paper(axis.places)
+        west, south, east, north = _list_sides(self._window)
+        is_seen = ((places >= (west, south)) & (places <= (east, north))).all(axis=1)
+        return is_seen, turn(axis.directions, 90.0 - self._window.angle)
+
+    def _draw_stations(self, texts: list[_Text]) -> None:
+        """Draw the axis, a tick across it at each station, and the texts."""
+        axis = self._contents.axis
+        if axis is None:
+            return
+        self._draw_paths(Paths.whole(axis.line, np.array([0, len(axis.line)])), AXIS_PEN, "axis")
+        seen, normals = self._find_ticks(axis)
+        if axis.texts and seen.any():
+            places, arms = self._window.to_paper(axis.places)[seen], _TICK * normals[seen]
+            ticks = list(np.stack([places - arms, places + arms], axis=1))
+            parts = clip_paths(join_paths(ticks), self._window.frame).parts()
+            self._canvas.draw_paths(parts, AXIS_PEN._replace(dashes=()), "station-ticks")
+        self._write(texts, AXIS_PEN.color, "station-label")
+
+    def _write(self, texts: list[_Text], color: str, name: str) -> None:
+        for text in texts:
+            self._canvas.write(text.center, text.text, size=_LETTERS, color=color, name=name,
+                               rotation=text.rotation, across="center",
+                               up="center_baseline")  # fmt: skip
 
     def _draw_paths(self, paths: Paths, pen: Pen, kind: str) -> None:
         parts = clip_to_window(paths, self._window).parts()
@@ -145,17 +208,7 @@ class Map:
             if parts:
                 canvas.draw_paths(parts, CONTOUR_PENS[flag], f"{kind.replace(' ', '-')}s")
                 self.drawn.kinds.add(kind)
-        for text in texts:
-            canvas.write(
-                text.center,
-                text.text,
-                size=_LETTERS,
-                color=CONTOUR_PENS[True].color,
-                rotation=text.rotation,
-                across="center",
-                up="center_baseline",
-                name="contour-label",
-            )
+        self._write(texts, CONTOUR_PENS[True].color, "contour-label")
 
     def _choose_labels(self, texts: list[_Text]) -> list[_Text]:
         """Keep the labels that have room; one on a line only where its contour has no other."""
@@ -178,49 +231,59 @@ class Map:
 
     # ---------------------------------------------------------------- points
 
-    def _draw_marks(self, marks: Marks) -> None:
+    def _draw_marks(self) -> None:
+        """Draw points with their labels, and spot heights that have room, which come first."""
+        shown = [(marks, *self._find_seen(marks)) for marks in self._contents.marks]
+        for marks, places, seen in shown:
+            if marks.kind == "point":
+                self._draw_arms(marks, places[seen])
+                for place in places[seen[:_MOST_MARK_LABELS]].tolist() if marks.texts else ():
+                    self._room.occupy(outline_text(place, 2 * _MARK, 2 * _MARK))
+        for marks, places, seen in reversed(shown):
+            labeled = seen[:_MOST_MARK_LABELS].tolist() if marks.texts else []
+            written = [one for one in labeled if self._write_mark(marks, one, places[one].tolist())]
+            if marks.kind != "point":
+                self._draw_arms(marks, places[written])
+            if marks.texts:
+                self.drawn.crowded[marks.kind] += len(seen) - len(written)
+
+    def _find_seen(self, marks: Marks) -> tuple[Float64Array, Int64Array]:
+        """Return places on paper, and the numbers of those whose marks are within the frame."""
         places = self._window.to_paper(marks.places)
         west, south, east, north = _list_sides(self._window)
-        x, y = places[:, 0], places[:, 1]
-        is_seen = (
-            (x - _MARK >= west) & (x + _MARK <= east) & (y - _MARK >= south) & (y + _MARK <= north)
-        )
-        seen = np.flatnonzero(is_seen)
-        if len(seen) == 0:
-            return
-        arms = _MARK * np.array([[(-1, 0), (1, 0)], [(0, -1), (0, 1)]])
-        crosses = (places[seen, None, None, :] + arms).reshape(-1, 2, 2)
-        self._canvas.draw_paths(list(crosses), _MARK_PEN, "points")
-        self.drawn.kinds.add("point")
-        for number in seen[:_MOST_MARK_LABELS].tolist():
-            self.drawn.crowded += not self._write_mark(marks, number, places[number])
-        if marks.numbers or marks.elevations:
-            self.drawn.crowded += max(0, len(seen) - _MOST_MARK_LABELS)
+        low, high = (west + _MARK, south + _MARK), (east - _MARK, north - _MARK)
+        return places, np.flatnonzero(((places >= low) & (places <= high)).all(axis=1))
 
-    def _write_mark(self, marks: Marks, number: int, place: Float64Array) -> bool:
-        """Write number and elevation beside a point, above and below, if there is room."""
-        texts = [
-            (written[number], side, name)
-            for written, side, name in (
-                (marks.numbers, 1.0, "point-number"),
-                (marks.elevations, -1.0, "point-elevation"),
-            )
-            if written and written[number]
-        ]
+    def _draw_arms(self, marks: Marks, places: Float64Array) -> None:
+        if len(places):
+            crosses = (places[:, None, None, :] + ARMS[marks.kind]).reshape(-1, 2, 2)
+            self._canvas.draw_paths(list(crosses), _MARK_PEN, _NAMES[marks.kind])
+            self.drawn.kinds.add(marks.kind)
+
+    def _write_mark(self, marks: Marks, number: int, place: Sequence[float]) -> bool:
+        """Write texts beside a point, one below the other, if there is room to one side."""
+        texts = {name: own[number] for name, own in marks.texts.items() if own[number]}
         if not texts:
             return True
-        height = _CAPITAL * _POINT_LETTERS + 0.3
-        width = max(measure_text(text, _POINT_LETTERS) for text, _, _ in texts)
-        low = min(0.0 if side > 0 else -height for _, side, _ in texts)
-        top = max(height if side > 0 else 0.0 for _, side, _ in texts)
-        x, y = float(place[0]) + _MARK + 0.2, float(place[1])
-        if not self._room.take(
-            outline_text((x + width / 2, y + (low + top) / 2), width, top - low)
+        if marks.kind != "point" and not self._room.take(
+            outline_text((place[0], place[1]), 2 * _MARK, 2 * _MARK)
         ):
             return False
-        for text, side, name in texts:
-            beside = y + 0.15 if side > 0 else y - height + 0.15
-            self._canvas.write((x, beside), text, size=_POINT_LETTERS, name=name)
+        size = self._contents.label_size / CAPITAL
+        step = self._contents.label_size + 0.3
+        width = max(measure_text(text, size) for text in texts.values())
+        for side in (1.0, -1.0):
+            x = place[0] + side * (_MARK + _GAP)
+            center = (x + side * width / 2, place[1])
+            if self._room.take(outline_text(center, width, step * len(texts))):
+                break
+        else:
+            return False
+        across = "left" if side > 0 else "right"
+        y = place[1] + step * len(texts) / 2
+        for name, text in texts.items():
+            y -= step
+            self._canvas.write((x, y + 0.15), text, size=size, across=across, name=name)
         return True
 
     # ---------------------------------------------------------------- match lines
@@ -303,7 +366,7 @@ def _place_labels(seen: Paths, lines: Features, labeling: str) -> list[_Text]:
 
 def _make_outline(center: tuple[float, float], rotation: float, text: str, source: int) -> _Text:
     width = measure_text(text, _LETTERS) + 1.0
-    corners = outline_text(center, width, _CAPITAL * _LETTERS + 0.8, rotation)
+    corners = outline_text(center, width, CAPITAL * _LETTERS + 0.8, rotation)
     return _Text(center, rotation, text, corners, source)
 
 

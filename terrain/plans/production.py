@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import datetime as dt
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -11,39 +10,83 @@ import numpy as np
 from ...base import optional
 from ...base.checks import require_tin, require_type
 from ...base.crs import assume_elevation_unit
-from ...base.errors import LinesError, OptionError, PointsError, choice
-from ...base.georeference import find_axes, require_same_crs, undo_north_up
-from ...base.notes import join_notes
-from ...base.policies import ContourLabeling, GridStyle, PointMarking, SheetLayout
+from ...base.errors import OptionError, PointsError, choice
+from ...base.georeference import DrawnCRS, undo_north_up
+from ...base.policies import ContourLabeling, GridStyle, SheetLayout
 from ...base.products import product
 from ...base.sentences import counted
 from ...tin import Bounds, Survey
 from ..drawing import UNTITLED, draw_north_up
-from ..surface import as_features, as_segments
 from .arrangement import Ground, choose_single, cut_rows, cut_strip_windows
-from .canvas import Canvas
 from .contents import describe_count, gather_contents
-from .files import list_files, write_sheets
 from .footprint import find_footprint
 from .index_sheet import draw_index
-from .lettering import PURPOSE
 from .mapping import Map
-from .papers import Paper, arrange_sheet
+from .marks import Marking
+from .paper import (
+    PLAN_SUFFIXES,
+    PURPOSE,
+    Document,
+    Drawable,
+    Model,
+    NoRoom,
+)
 from .scales import Scale, describe_factor, find_ground_unit, measure_scale_factor
-from .title_block import Caption, describe_missing_letters, draw_title_block, read_words
+from .stations import as_stationed, cut_band, require_shown
+from .title_block import (
+    Caption,
+    arrange_sheets,
+    begin_caption,
+    describe_crs,
+    describe_factor_here,
+    describe_missing_letters,
+    draw_title_block,
+)
 
 if TYPE_CHECKING:
-    import os
+    import datetime as dt
     from collections.abc import Iterator, Sequence
-    from pathlib import Path
 
     from ...base.arrays import Float64Array
     from ...base.crs import Unit, UnitLike
     from ...tin import TIN
     from .contents import Contents
-    from .mapping import Drawn
-    from .papers import Layout, PaperLike
+    from .paper import Layout, PaperLike
+    from .stations import Stationed
     from .windows import Window
+
+
+_LAYERS = {
+    "": "SHEET",
+    "contours": "CONTOURS",
+    "index-contours": "INDEX_CONTOURS",
+    "contour-label": "CONTOUR_LABELS",
+    "hard-lines": "BREAKLINES",
+    "soft-lines": "SOFT_BREAKLINES",
+    "boundary-lines": "BOUNDARY",
+    "hole-lines": "HOLES",
+    "water-lines": "WATER",
+    "water": "WATER",
+    "outline": "OUTLINE",
+    "axis-lines": "AXIS",
+    "station-ticks": "AXIS",
+    "station-label": "STATIONS",
+    "points": "POINTS",
+    "point-number": "POINT_NUMBERS",
+    "point-elevation": "POINT_ELEVATIONS",
+    "point-code": "POINT_CODES",
+    "spots": "SPOT_HEIGHTS",
+    "spot-elevation": "SPOT_HEIGHTS",
+    "grid-lines": "GRID",
+    "grid-crosses": "GRID",
+    "grid-ticks": "GRID",
+    "grid-label": "GRID",
+    "match-lines": "MATCH_LINES",
+    "match-label": "MATCH_LINES",
+    "sheets": "MATCH_LINES",
+    "sheet-number": "MATCH_LINES",
+}
+"""Layers of a drawing by what is drawn."""
 
 
 class _Sheet(NamedTuple):
@@ -60,16 +103,14 @@ class _Style:
     """How sheets are drawn: options of :func:`tinsmith.plan` that change no geometry."""
 
     labels: str
-    points: str
     grid: str
 
     def __post_init__(self) -> None:
         choice("labels", self.labels, ContourLabeling)
-        choice("points", self.points, PointMarking)
         choice("grid", self.grid, GridStyle)
 
 
-class Plan:
+class Plan(Document):
     """A surface on sheets of paper, ready to be written; made by :func:`tinsmith.plan`.
 
     Attributes
@@ -95,6 +136,9 @@ class Plan:
     <Plan: 1 sheet, A4 landscape, 1:250>
     """
 
+    _suffixes = PLAN_SUFFIXES
+    _what = "a plan"
+
     def __init__(
         self,
         sheets: Sequence[_Sheet],
@@ -104,17 +148,14 @@ class Plan:
         notes: Sequence[str],
     ) -> None:
         self._sheets = tuple(sheets)
+        last = self._sheets[-1]
+        super().__init__(last.layout.paper, caption.title, notes)
         self._contents = contents
         self._style = style
         self._caption = caption
-        last = self._sheets[-1]
         self.scale = last.scale.denominator
         self.scale_text = last.scale.text
-        self.paper = (last.layout.paper.width, last.layout.paper.height)
-        self.paper_name = last.layout.paper.name
         self.interval = contents.interval
-        self._notes = tuple(notes)
-        self._notes_of_drawing: tuple[str, ...] = ()
 
     def __len__(self) -> int:
         return len(self._sheets)
@@ -124,94 +165,31 @@ class Plan:
         return f"<Plan: {sheets}, {self.paper_name}, {self.scale_text}>"
 
     @property
-    def notes(self) -> tuple[str, ...]:
-        """What was chosen or assumed, and after :meth:`save` what had no room, in sentences."""
-        return (*self._notes, *self._notes_of_drawing)
-
-    def with_notes(self, notes: Sequence[str]) -> Plan:
-        """Return the same with further notes in front of its own.
-
-        Examples
-        --------
-        >>> import tinsmith as ts
-        >>> tin = ts.triangulate([[0, 0, 5], [40, 0, 6], [0, 30, 8]], crs="EPSG:32616")
-        >>> ts.plan(tin).with_notes(["One row was left out."]).notes[0]
-        'One row was left out.'
-        """
-        joined = join_notes(notes, self._notes)
-        return Plan(self._sheets, self._contents, self._style, self._caption, joined)
-
-    @property
     def frames(self) -> Float64Array:
         """Corners on the ground of the map on each sheet, (n, 4, 2), from the lower left one."""
         corners = np.array([sheet.window.corners for sheet in self._sheets])
         frames: Float64Array = undo_north_up(corners, self._contents.contours.crs)
         return frames
 
-    def list_files(self, path: str | os.PathLike[str]) -> list[Path]:
-        """Return the names of the files that :meth:`save` writes.
+    def _find_model(self) -> Model:
+        """Return where the sheets lie: one, with north up, at its own coordinates."""
+        sheet = self._sheets[-1]
+        model = Model(
+            self._caption.unit,
+            sheet.window.mm_per_unit,
+            _LAYERS,
+            {"Title": self._caption.title, "Scale": self.scale_text},
+        )
+        if len(self) > 1 or sheet.window.angle or isinstance(self._contents.contours.crs, DrawnCRS):
+            return model
+        corner = sheet.window.to_ground(np.zeros(2))
+        return model._replace(origin=(float(corner[0]), float(corner[1])))
 
-        Examples
-        --------
-        >>> import tinsmith as ts
-        >>> tin = ts.triangulate([[0, 0, 5], [40, 0, 6], [0, 30, 8]], crs="EPSG:32616")
-        >>> [file.name for file in ts.plan(tin).list_files("yard.pdf")]
-        ['yard.pdf']
-        """
-        return list_files(path, len(self))
-
-    def save(self, path: str | os.PathLike[str], *, dpi: int = 200) -> list[Path]:
-        """Write the sheets: as pages of a PDF, or each as a file of its own (.svg, .png).
-
-        Parameters
-        ----------
-        path : path
-            Of several SVGs or PNGs the names end in their numbers: plan-1.svg, plan-2.svg.
-        dpi : int
-            Pixels to an inch of a PNG, 50 to 1200.
-
-        Returns
-        -------
-        list of pathlib.Path
-            The files written: all of them whole, or the old ones are left as they were.
-
-        Raises
-        ------
-        OptionError
-            If the path or dpi is none, or a picture would have too many pixels.
-        RenderError
-            If the suffix is another.
-        WriteError
-            If a file cannot be written.
-        MissingExtraError
-            If matplotlib is not installed.
-
-        Examples
-        --------
-        >>> import tinsmith as ts
-        >>> from tempfile import TemporaryDirectory
-        >>> tin = ts.triangulate([[0, 0, 5], [40, 0, 6], [0, 30, 8]], crs="EPSG:32616")
-        >>> with TemporaryDirectory() as folder:
-        ...     [file.name for file in ts.plan(tin, title="Yard").save(f"{folder}/yard.pdf")]
-        ['yard.pdf']
-        """
-        files = list_files(path, len(self))
-        return write_sheets(files, self._draw(), self.paper, dpi, self._caption.title)
-
-    def _draw(self) -> Iterator[Canvas]:
-        """Draw sheet after sheet, each when the one before is written."""
-        crowded, is_cut = 0, False
-        for number, sheet in enumerate(self._sheets, 1):
-            canvas, drawn, has_room = self._draw_sheet(number, sheet)
-            crowded, is_cut = crowded + drawn.crowded, is_cut or not has_room
-            yield canvas
-        self._notes_of_drawing = tuple(_describe_no_room(crowded, is_cut))
-
-    def _draw_sheet(self, number: int, sheet: _Sheet) -> tuple[Canvas, Drawn, bool]:
-        canvas, grid = Canvas(sheet.layout.paper), self._style.grid
+    def _draw_sheet(self, number: int, canvas: Drawable) -> NoRoom:
+        sheet, grid = self._sheets[number], self._style.grid
         maps = {k: one.window for k, one in enumerate(self._sheets, 1) if not one.is_index}
         caption = self._caption._replace(
-            scale=sheet.scale.text, sheet=f"Sheet {number} of {len(self)}"
+            scale=sheet.scale.text, sheet=f"Sheet {number + 1} of {len(self)}"
         )
         if sheet.is_index:
             caption = caption._replace(title=f"{caption.title}: index of sheets")
@@ -220,18 +198,8 @@ class Plan:
             drawing = Map(canvas, sheet.window, self._contents)
             drawn = drawing.draw(labeling=self._style.labels, grid=grid, numbers=tuple(maps))
         kinds = [*drawn.kinds, *(["grid"] if grid != "none" else [])]
-        has_room = draw_title_block(canvas, sheet.layout, sheet.window, caption, kinds)
-        return canvas, drawn, has_room
-
-
-def _describe_no_room(crowded: int, is_cut: bool) -> Iterator[str]:
-    if crowded:
-        yield (
-            f"{counted(crowded, 'label')} of points were left out, where they would have met "
-            "others: a larger scale has room."
-        )
-    if is_cut:
-        yield "A text in the title block was cut, for it had no room: give a shorter title."
+        no_room = draw_title_block(canvas, sheet.layout, sheet.window, caption, kinds)
+        return no_room._replace(left_out=drawn.crowded)
 
 
 @product
@@ -243,14 +211,20 @@ def plan(
     orientation: str | None = None,
     layout: str = "single",
     axis: Any = None,
+    station_interval: float | None = None,
+    station_range: tuple[float, float] | None = None,
     interval: float | None = None,
     smooth: float | None = None,
     labels: str = "index",
     points: str = "none",
+    label_size: float = 1.1,
+    decimals: int | None = None,
+    spots: Any = None,
     grid: str = "crosses",
     survey: Survey | None = None,
     title: str | None = None,
     date: dt.date | str | None = None,
+    title_block: Any = None,
     ground_unit: UnitLike | None = None,
 ) -> Plan:
     """Draw a plan true to scale: contours, lines and points with a coordinate grid, on paper.
@@ -271,8 +245,13 @@ def plan(
         All on one sheet; rows of sheets, north up; or strips along the axis of a long surface, each
         turned so that the axis goes on to the right. Several sheets have match lines, and an index
         sheet goes before them.
-    axis : (k, 2) array, Breakline, Features or geometry, optional
-        Of strips: a line that they follow. Default one along the surface, from west to east.
+    axis : Alignment, (k, 2) array, Breakline, Features or geometry, optional
+        One line, which is drawn, and which strips follow. Their default is one along the surface,
+        from west to east.
+    station_interval : float, optional
+        Mark the stations of the axis at multiples of it and at both ends, CRS units.
+    station_range : (float, float), optional
+        Of strips: only the ground along this part of the axis, from one station to another.
     interval : float, optional
         Between contours, in the unit of elevations; every fifth is an index contour. Default a
         round number with twelve contours or more.
@@ -280,22 +259,37 @@ def plan(
         Round contours within this much of their level, as :func:`tinsmith.contours` does.
     labels : {"index", "all", "none"}
         Which contours have their elevation written on them.
-    points : {"none", "marks", "numbers", "elevations", "both"}
-        What is drawn at the points of the survey, or at the vertices if there is none.
+    points : str
+        What is drawn at the points of the survey, or at the vertices if there is none: "none",
+        "marks", or what labels say, some of "numbers", "elevations" and "codes" with commas between
+        them; "both" is "numbers,elevations".
+    label_size : float
+        Height of the digits at points and spot heights, millimetres on paper.
+    decimals : int, optional
+        Of elevations at points and spot heights. Default as many as points need, up to three, and
+        two at spot heights.
+    spots : float, "peaks", (k, 2) array, Features or geometry, optional
+        Spot heights: at the nodes of a grid of this spacing, CRS units; at the vertices that are
+        higher or lower than all of their neighbours; or at points.
     grid : {"crosses", "lines", "none"}
     survey : Survey, optional
         In the CRS of the TIN, and in its unit of elevations.
     title : str, optional
         Default "Terrain surface".
     date : datetime.date or str, optional
-        Written as it is; by default there is none.
+        Written as it is; default that of the title block, if it has one.
+    title_block : path or mapping, optional
+        TOML file with what the office writes in its title block: ``company``, ``client``,
+        ``project``, ``drawing_number``, ``drawn_by``, ``checked_by``, ``date``, ``logo`` (a PNG
+        beside the file), ``rows`` (a table of further names and texts) and ``revisions`` (tables
+        with ``mark``, ``date``, ``text`` and ``by``); or a mapping with the same.
     ground_unit : Unit or str, optional
         Of eastings and northings ("m", "ft", "US survey foot"), where the CRS is not known.
 
     Returns
     -------
     Plan
-        ``save`` writes it as PDF, SVG or PNG.
+        ``save`` writes it as PDF, SVG, PNG or DXF.
 
     Raises
     ------
@@ -306,9 +300,11 @@ def plan(
         wrong here, as that of Web Mercator is; or if the survey or axis has another CRS.
     OptionError
         If an option is outside what is allowed, or the surface does not fit the paper: the sentence
-        names the scale that does.
+        names the scale that does; or a field of the title block is unknown, too long or no text.
+    ReadError
+        If the file of the title block, or its logo, cannot be read.
     LinesError
-        If the axis is not one line.
+        If the axis is not one line, or has no surface along it.
     MissingExtraError
         If matplotlib is not installed.
 
@@ -334,11 +330,14 @@ def plan(
     require_type("survey", survey, Survey, or_none=True)
     optional.load("matplotlib", PURPOSE)
     choice("layout", layout, SheetLayout)
-    style = _Style(labels, points, grid)
-    heading, day = read_words(title, date, UNTITLED)
-    layouts = [arrange_sheet(one) for one in Paper.choices(paper, orientation)]
+    style = _Style(labels, grid)
     unit = find_ground_unit(tin.crs, ground_unit)
-    line, notes = _as_axis(axis, tin, layout)
+    caption = begin_caption(title, date, title_block, untitled=UNTITLED, unit=unit)
+    layouts = arrange_sheets(paper, orientation, caption)
+    along = as_stationed(axis, tin, station_interval, station_range)
+    if station_range is not None and layout != "strips":
+        raise OptionError("layout", layout, "'strips' where a range of stations is given")
+    marking = Marking.of(tin, points, spots, decimals, label_size)
     tin, survey = draw_north_up(tin), draw_north_up(survey)
     shapely = optional.load("shapely")
     if len(tin.triangles) == 0:
@@ -348,37 +347,20 @@ def plan(
     factor = measure_scale_factor(tin.crs, *undo_north_up(ground.bounds.center, tin.crs))
     chosen = None if scale is None else Scale.of(scale, ground.unit)
     contents = gather_contents(
-        tin, ground.footprint, interval=interval, smooth=smooth, points=points, survey=survey
-    )
-    sheets = _arrange(ground, layouts, chosen, layout, line)
-    caption = Caption(
-        title=heading,
-        facts=tuple(_list_facts(tin, survey, contents, ground.unit, factor, sheets[-1])),
-        scale="",
-        sheet="",
-        date=day,
-        unit=ground.unit,
-    )
-    notes += _list_notes(contents, sheets, factor, interval, caption)
+        tin,
+        ground.footprint,
+        interval=interval,
+        smooth=smooth,
+        marking=marking,
+        survey=survey,
+        axis=along,
+    )  # fmt: skip
+    sheets = _arrange(ground, layouts, chosen, layout, along)
+    require_shown(along, [sheet.window for sheet in sheets])
+    facts = _list_facts(tin, survey, contents, ground.unit, factor, sheets[-1])
+    caption = caption._replace(facts=tuple(facts))
+    notes = list(_list_notes(contents, sheets, factor, interval, caption))
     return Plan(sheets, contents, style, caption, notes)
-
-
-def _as_axis(axis: Any, tin: TIN, layout: str) -> tuple[Float64Array | None, list[str]]:
-    """Return the vertices of the line that strips follow, and notes on it."""
-    if axis is None:
-        return None, []
-    if layout != "strips":
-        raise OptionError("layout", layout, "'strips' where an axis is given")
-    features = as_features(axis, "axis")
-    if features.kind != "lines" or len(features.offsets[0]) != 2:
-        raise LinesError(
-            f"The axis of strips is one line, and there are {len(features)} {features.kind}."
-        )
-    notes = require_same_crs(features.crs, tin.crs, "the axis", is_plain=features.crs is None)
-    xy = np.ascontiguousarray(features.coordinates[:, :2])
-    segments = as_segments(xy, features.offsets[0], what="axis")
-    vertices = np.concatenate([segments.starts, segments.ends[-1:]])
-    return find_axes(tin.crs).turn(vertices), list(notes)
 
 
 def _arrange(
@@ -386,7 +368,7 @@ def _arrange(
     layouts: Sequence[Layout],
     scale: Scale | None,
     layout: str,
-    axis: Float64Array | None,
+    axis: Stationed | None,
 ) -> list[_Sheet]:
     """Return the sheets; where there are several, the index sheet before them."""
     if layout == "single":
@@ -398,7 +380,12 @@ def _arrange(
     if layout == "rows":
         windows = cut_rows(ground, paper, scale)
     else:
-        windows = cut_strip_windows(ground, paper, scale, axis)
+        band = ground
+        if axis is not None and axis.is_part:
+            height = paper.frame.height / scale.measure_unit(ground.unit)
+            band = ground._replace(footprint=cut_band(ground.footprint, axis, height))
+        line = None if axis is None else axis.line
+        windows = cut_strip_windows(band, paper, scale, line)
     sheets = [_Sheet(window, scale, paper) for window in windows]
     if len(sheets) == 1:
         return sheets
@@ -420,12 +407,13 @@ def _list_facts(
     sheet: _Sheet,
 ) -> Iterator[str]:
     """Yield what the title block says, a line each."""
-    yield f"CRS unknown, coordinates in {unit.symbol}" if tin.crs is None else tin.crs.caption
+    yield describe_crs(tin.crs, unit)
     yield _describe_elevations(tin)
     yield _describe_contours(tin, contents)
     yield describe_count(tin, survey)
-    if factor is not None:
-        yield f"Scale factor of the CRS here {factor:.6f}"
+    if contents.axis is not None:
+        yield "Axis from station {} to {}".format(*contents.axis.ends)
+    yield from describe_factor_here(factor)
     paper = sheet.layout.paper
     yield f"Printed true to scale on {paper.name}"
 
@@ -460,18 +448,18 @@ def _list_notes(
     if interval is None and len(contents.contours):
         yield f"The contour interval {contents.interval:.12g} was chosen for the relief."
     yield from describe_factor(factor, sheets[-1].scale)
-    yield from describe_missing_letters([caption.title, caption.date, *caption.facts])
+    yield from describe_missing_letters(caption)
     yield from _describe_marks_outside(contents, sheets)
 
 
 def _describe_marks_outside(contents: Contents, sheets: Sequence[_Sheet]) -> Iterator[str]:
     """Say how many points lie on no sheet: those far outside the surface."""
-    if contents.marks is None:
-        return
-    is_shown = np.zeros(len(contents.marks.places), np.bool_)
-    for sheet in sheets:
-        frame, places = sheet.window.frame, sheet.window.to_paper(contents.marks.places)
-        low, high = (frame.xmin, frame.ymin), (frame.xmax, frame.ymax)
-        is_shown |= ((places >= low) & (places <= high)).all(axis=1) & (not sheet.is_index)
-    if not is_shown.all():
-        yield f"{counted(int((~is_shown).sum()), 'point')} outside the surface are on no sheet."
+    for marks in contents.marks:
+        is_shown = np.zeros(len(marks.places), np.bool_)
+        for sheet in sheets:
+            frame, places = sheet.window.frame, sheet.window.to_paper(marks.places)
+            low, high = (frame.xmin, frame.ymin), (frame.xmax, frame.ymax)
+            is_shown |= ((places >= low) & (places <= high)).all(axis=1) & (not sheet.is_index)
+        if not is_shown.all():
+            many = counted(int((~is_shown).sum()), marks.kind)
+            yield f"{many} outside the surface are on no sheet."

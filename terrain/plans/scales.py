@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 from ...base.checks import is_finite_number
 from ...base.crs import FOOT, US_SURVEY_FOOT, Unit
 from ...base.errors import CrsError, OptionError
-from .papers import MM_PER_INCH
+from .paper import MM_PER_INCH
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

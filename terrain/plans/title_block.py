@@ -3,30 +3,45 @@
 from __future__ import annotations
 
 import datetime as dt
-from typing import TYPE_CHECKING, NamedTuple
+from functools import partial
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ...base.errors import OptionError
 from ...tin import Bounds
 from ..drawing import NORTH_ARROW, make_scale_bar, palette, parse_text, parse_title
-from .canvas import INK, Pen
 from .grid import PEN as GRID_PEN
-from .lettering import clean_text, find_missing_letters, fit_text
-from .mapping import CONTOUR_PENS, LINE_PENS, MATCH_PEN, OUTLINE_PEN
+from .mapping import ARMS, AXIS_PEN, CONTOUR_PENS, LINE_PENS, MATCH_PEN, OUTLINE_PEN
+from .office_block import draw_office, measure_office
+from .paper import (
+    INK,
+    Caption,
+    NoRoom,
+    Paper,
+    Pen,
+    arrange_sheet,
+    clean_text,
+    find_missing_letters,
+    fit_text,
+)
+from .template import read_template
 from .windows import outline, turn
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Iterable, Iterator, Sequence
 
-    from ...base.crs import Unit
-    from .canvas import Drawable
-    from .papers import Layout
+    from ...base.crs import CRS, Unit
+    from .paper import Drawable, Layout, PaperLike
     from .windows import Window
 
 _BORDER = Pen(INK, 0.5)
 _RULE = Pen(INK, 0.25)
 _THIN = Pen(INK, 0.13)
 _LETTERS_SHOWN = 10
+_LEAST_FRAME = 50.0
+"""Height left for what is drawn, millimetres."""
+_CROSS = np.array([[(-1, 0), (1, 0)], [(0, -1), (0, 1)]])
 _LEGEND = {
     "contour": "contour",
     "index contour": "index contour",
@@ -37,7 +52,9 @@ _LEGEND = {
     "water": "water's edge",
     "water area": "water",
     "outline": "edge of the surface",
+    "axis": "axis",
     "point": "survey point",
+    "spot height": "spot height",
     "sheet": "sheet",
     "match line": "match line",
     "grid": "coordinate grid",
@@ -47,35 +64,55 @@ _PENS = {
     "index contour": CONTOUR_PENS[True],
     **LINE_PENS,
     "outline": OUTLINE_PEN,
+    "axis": AXIS_PEN,
     "match line": MATCH_PEN,
     "sheet": MATCH_PEN._replace(dashes=()),
 }
 
 
-class Caption(NamedTuple):
-    """What a title block says."""
+def begin_caption(
+    title: str | None, date: dt.date | str | None, template: Any, *, untitled: str, unit: Unit
+) -> Caption:
+    """Return what a title block says before anything is drawn.
 
-    title: str
-    facts: tuple[str, ...]
-    """CRS, elevations, contours, points: a line each."""
-    scale: str
-    sheet: str
-    """Such as "Sheet 1 of 3"."""
-    date: str
-    unit: Unit
-    """Of the coordinates."""
-
-
-def read_words(title: str | None, date: dt.date | str | None, untitled: str) -> tuple[str, str]:
-    """Return a title and a date as they are written; OptionError if one is no text."""
+    Raises OptionError if a text is none, or for what :func:`read_template` refuses.
+    """
     heading = clean_text(parse_title(title, untitled))
     day = date.isoformat()[:10] if isinstance(date, dt.date) else date
-    return heading, clean_text(parse_text("date", day, or_none=True))
+    office = read_template(template)
+    written = clean_text(parse_text("date", day, or_none=True)) or office.date
+    return Caption(heading, (), "", "", written, unit, office)
 
 
-def describe_missing_letters(texts: Sequence[str]) -> Iterator[str]:
-    """Tell which letters of texts the font does not have."""
-    missing = find_missing_letters("".join(texts))
+def arrange_sheets(paper: PaperLike, orientation: str | None, caption: Caption) -> list[Layout]:
+    """Return the layouts of the sheets that a paper stands for, with room for the caption.
+
+    Raises OptionError if the caption leaves too little of every one.
+    """
+    measure = partial(measure_office, caption.office)
+    layouts = [arrange_sheet(one, measure) for one in Paper.choices(paper, orientation)]
+    usable = [one for one in layouts if one.frame.height >= _LEAST_FRAME]
+    if not usable:
+        left = max(0.0, max(one.frame.height for one in layouts))
+        allowed = f"larger: its title block leaves {left:.0f} mm of the height"
+        raise OptionError("paper", layouts[0].paper.name, allowed)
+    return usable
+
+
+def describe_crs(crs: CRS | None, unit: Unit) -> str:
+    """Return what a title block says of a CRS."""
+    return f"CRS unknown, coordinates in {unit.symbol}" if crs is None else crs.caption
+
+
+def describe_factor_here(factor: float | None) -> Iterator[str]:
+    """Yield what a title block says of the scale factor of a CRS, if it is known."""
+    if factor is not None:
+        yield f"Scale factor of the CRS here {factor:.6f}"
+
+
+def describe_missing_letters(caption: Caption, more: Iterable[str] = ()) -> Iterator[str]:
+    """Tell which letters of a caption, and of more texts, the font does not have."""
+    missing = find_missing_letters("".join([*caption.list_texts(), *more]))
     if missing:
         yield (
             f"The font has no {', '.join(repr(one) for one in missing[:_LETTERS_SHOWN])}: boxes "
@@ -85,8 +122,8 @@ def describe_missing_letters(texts: Sequence[str]) -> Iterator[str]:
 
 def draw_title_block(
     canvas: Drawable, layout: Layout, window: Window, caption: Caption, kinds: Sequence[str]
-) -> bool:
-    """Draw border and title block; tell whether all of its texts had room.
+) -> NoRoom:
+    """Draw border and title block; return what had no room.
 
     The legend explains ``kinds``.
     """
@@ -95,13 +132,6 @@ def draw_title_block(
     _draw_north_arrow(canvas, layout, window.angle)
     draw_scale_bar(canvas, layout, window.mm_per_unit, caption.unit)
     return draw_title(canvas, layout, caption)
-
-
-def describe_cut_texts(is_cut: bool) -> tuple[str, ...]:
-    """Return the note of sheets on which a text had no room, if one had none."""
-    if not is_cut:
-        return ()
-    return ("Texts were cut, for they had no room: give shorter ones, or larger paper.",)
 
 
 def draw_border(canvas: Drawable, layout: Layout) -> None:
@@ -117,8 +147,8 @@ def draw_border(canvas: Drawable, layout: Layout) -> None:
 # ---------------------------------------------------------------- title
 
 
-def draw_title(canvas: Drawable, layout: Layout, caption: Caption) -> bool:
-    """Write title and facts, below them scale, date and sheet; tell whether all had room."""
+def draw_title(canvas: Drawable, layout: Layout, caption: Caption) -> NoRoom:
+    """Write title, facts, scale, date and sheet, and what the office says."""
     cell, factor = layout.title, layout.factor
     pad, foot = 2.0 * factor, 9.5 * factor
     width = cell.width - 2 * pad
@@ -135,7 +165,9 @@ def draw_title(canvas: Drawable, layout: Layout, caption: Caption) -> bool:
         y -= line
     facts = Bounds(cell.xmin + pad, cell.ymin + foot, cell.xmax - pad, y - 0.6 * factor)
     is_cut = _write_facts(canvas, facts, caption.facts, factor)
-    return not (_draw_foot(canvas, layout, caption, foot) | is_cut | fitted.is_cut)
+    is_cut |= _draw_foot(canvas, layout, caption, foot) | fitted.is_cut
+    have_room, has_logo = draw_office(canvas, layout, caption.office)
+    return NoRoom(is_cut or not have_room, has_logo=has_logo)
 
 
 def _write_facts(canvas: Drawable, room: Bounds, facts: Sequence[str], factor: float) -> bool:
@@ -257,10 +289,8 @@ def _draw_sample(canvas: Drawable, kind: str, x: float, y: float, factor: float)
         box = Bounds(x, y - 1.3 * factor, x + width, y + 1.3 * factor)
         canvas.fill([outline(box)], palette.WATER, "legend-sample")
         return
-    if kind in ("point", "grid"):
-        arm, pen = (0.7, _THIN) if kind == "point" else (2.0, GRID_PEN)
-        middle = np.array([x + width / 2, y])
-        cross = [np.array([middle - step, middle + step]) for step in arm * np.eye(2)]
-        canvas.draw_paths(cross, pen, "legend-sample")
+    if kind in ARMS or kind == "grid":
+        arms, pen = (ARMS[kind], _THIN) if kind in ARMS else (2.0 * _CROSS, GRID_PEN)
+        canvas.draw_paths(list(arms + np.array([x + width / 2, y])), pen, "legend-sample")
         return
     canvas.draw_paths([np.array([(x, y), (x + width, y)])], _PENS[kind], "legend-sample")

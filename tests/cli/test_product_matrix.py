@@ -32,6 +32,7 @@ OF_OTHERS = {*TABLES, ".geojson", ".geojsonl", ".gpkg", ".fgb", ".shp", ".parque
 
 OF_OTHER_KINDS = {
     "Plan": "a drawing",
+    "ProfileSheets": "a drawing",
     "SectionSheets": "a drawing",
     "VolumeReport": "a document",
     "Preview": "a page",
@@ -138,7 +139,7 @@ COMMANDS = {
     "slope": ("slope SITE", "Features Table"),
     "slope --aspect": ("slope SITE --aspect", "Features Table"),
     "hillshade": ("hillshade SITE --spacing 5", "Raster"),
-    "profile": ("profile SITE --line LINE", "Table picture"),
+    "profile": ("profile SITE --line LINE", "Table picture sheets"),
     "profile --sections": ("profile SITE --line LINE --sections 20 20", "Features Table picture"),
     "sections": (
         "sections SITE OTHER --line LINE --interval 20 --width 10",

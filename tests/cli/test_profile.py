@@ -4,11 +4,13 @@ import csv
 import json
 from pathlib import Path
 
+import ezdxf
 import numpy as np
 import pyogrio
 import pytest
 import shapely
 from support.commands import refuse, run
+from support.printed import read_pdf
 
 import tinsmith as ts
 
@@ -211,3 +213,52 @@ def test_features_of_several_kinds_are_refused(site, tmp_path):
     path.write_text(json.dumps({"type": "FeatureCollection", "features": features}))
     text = refuse("drape", site, path, "-o", tmp_path / "b.gpkg")
     assert "one of lines, and the first one of points" in text
+
+
+# ---------------------------------------------------------------- sheets
+
+
+@pytest.fixture
+def road(tmp_path):
+    """A surface, and a road with two gradient lines in LandXML."""
+    x, y = np.meshgrid(np.arange(0.0, 401.0, 20.0), np.arange(0.0, 101.0, 20.0))
+    points = np.column_stack([x.ravel() + 500_000, y.ravel() + 4e6, 300 + x.ravel() / 40])
+    tin = ts.triangulate(points, crs="EPSG:32616", elevation_unit="m")
+    rises = [
+        ts.VerticalAlignment([ts.VerticalPoint(0, 300 + k), ts.VerticalPoint(380, 308 + k)], name)
+        for k, name in enumerate(("FG", "FG2"))
+    ]
+    line = [[500_010, 4_000_050], [500_390, 4_000_050]]
+    axis = ts.Alignment.from_points(line, name="road", crs="EPSG:32616", verticals=rises)
+    ts.write(axis, tmp_path / "road.xml")
+    return ts.write(tin, tmp_path / "ground.ply"), tmp_path / "road.xml"
+
+
+def test_a_long_profile_is_drawn_on_sheets(road, tmp_path):
+    ground, axis = road
+    pdf, drawing = tmp_path / "a.pdf", tmp_path / "a.dxf"
+    out = run("profile", ground, "--line", axis, "--vertical", "FG2", "--scale", 1000, "--paper",
+              "A2", "--date", "2026-11-27", "-o", pdf, "-o", drawing, "-o", tmp_path / "a.csv",
+              "--json")  # fmt: skip
+    assert out.exit_code == 0, out.output
+    facts = json.loads(out.stdout)
+    assert (facts["scale"], facts["sheets"]) == (1000, 1)
+    (page,) = read_pdf(pdf)
+    words = {text.text for text in page.texts}
+    assert {"FG2", "2026-11-27", "1:100  (10 times)", "+2.105 %, 380.00"} <= words
+    layers = {layer.dxf.name for layer in ezdxf.readfile(drawing).layers}
+    assert {"ground", "FG2", "GRADIENT"} <= layers
+    assert (tmp_path / "a.csv").exists()
+
+
+def test_options_of_sheets_need_sheets(road, tmp_path):
+    ground, axis = road
+    table = tmp_path / "a.csv"
+    text = refuse("profile", ground, "--line", axis, "--scale", 500, "-o", table, code=2)
+    assert "--scale is for a drawn profile: name a file that ends in .pdf, .svg, .dxf." in text
+    text = refuse("profile", ground, "--line", axis, "-o", tmp_path / "a.pdf")
+    assert "Invalid vertical" in text
+    assert "'FG', 'FG2'" in text
+    text = refuse("profile", ground, "--line", axis, "--sections", 20, 10, "-o",
+                  tmp_path / "a.pdf")  # fmt: skip
+    assert ".pdf" in text

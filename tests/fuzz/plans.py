@@ -43,7 +43,25 @@ def generate(rng: np.random.Generator) -> Case:
         "labels": str(rng.choice(["index", "all", "none"])),
         "points_drawn": str(rng.choice(["none", "marks", "elevations"])),
         "grid": str(rng.choice(["crosses", "lines"])),
+        "spots": choose_spots(rng, size),
+        "label_size": float(rng.choice([0.8, 1.1, 3.5])),
+        "rows": int(rng.integers(-1, 9)),
+        "revisions": int(rng.integers(0, 11)),
     }
+
+
+def choose_spots(rng: np.random.Generator, size: float) -> Any:
+    return (None, "peaks", round(size * float(rng.uniform(0.05, 0.5)), 3))[int(rng.integers(3))]
+
+
+def make_block(case: Case) -> Any:
+    """A title block of so many rows and revisions, of words of any length."""
+    if case["rows"] < 0:
+        return None
+    words = ["W" * (7 * k % 101) for k in range(10)]
+    rows = {f"Row {k}": words[k] for k in range(case["rows"])}
+    revisions = [{"mark": "A", "text": word} for word in words[: case["revisions"]]]
+    return {"company": words[case["rows"]], "client": "x", "rows": rows, "revisions": revisions}
 
 
 def make_shape(shape: str, rng: np.random.Generator) -> Any:
@@ -80,11 +98,12 @@ def examine(case: Case) -> str:
         made = ts.plan(
             tin, scale=case["scale"], paper=paper, layout=case["layout"],
             labels=case["labels"], points=case["points_drawn"], grid=case["grid"],
+            spots=case["spots"], label_size=case["label_size"], title_block=make_block(case),
         )  # fmt: skip
     except ts.OptionError as error:
-        if error.option != "scale":
+        if error.option not in ("scale", "paper"):
             raise
-        return "refused: scale"
+        return f"refused: {error.option}"
     require_cover(tin, made)
     if len(made) > 12:
         return "many sheets"
@@ -96,6 +115,7 @@ def examine(case: Case) -> str:
             require_scale(page, made, case["crs"], is_index=is_index)
             if not is_index:
                 require_labels(page, tin, made)
+                require_marks(page, tin)
     return "one sheet" if len(made) == 1 else case["layout"]
 
 
@@ -169,6 +189,32 @@ def reaches(tin: Any, ground: Any, center: Any, level: float) -> bool:
     if np.isnan(found).any():
         return True  # at the edge of the surface
     return bool(found.min() <= level + 1e-9 and found.max() >= level - 1e-9)
+
+
+def require_marks(page: Page, tin: Any) -> None:
+    """Labels of points meet no other, and spot heights are the surface where they are."""
+    texts = [*page.named("point-elevation"), *page.named("spot-elevation")]
+    boxes = []
+    for one in texts:
+        width, (x, y) = 0.5 * one.size * len(one.text), one.place
+        x -= width if one.anchor == "end" else 0.0
+        boxes.append(shapely.box(x, y, x + width, y + 0.7 * one.size))
+    shapes = np.array(boxes, object)
+    pairs = shapely.STRtree(shapes).query(shapes, predicate="overlaps")
+    assert pairs.shape[1] == 0, f"{texts[pairs[0][0]].text} meets {texts[pairs[1][0]].text}"
+    spots, ground = page.named("spot-elevation"), georeference(page)
+    arms = page.paths.get("spots", [])
+    assert len(arms) == 2 * len(spots), "a spot height has one mark"
+    for text, arm in zip(spots, arms[::2], strict=True):
+        if ground is not None:
+            center = arm.mean(axis=0)
+            disc = center + np.stack(np.meshgrid(*[np.linspace(-0.05, 0.05, 5)] * 2), -1)
+            found = tin.interpolate(ground.to_ground(disc.reshape(-1, 2)))
+            low, high = float(text.text) - 0.0051, float(text.text) + 0.0051
+            known = found[np.isfinite(found)]
+            if len(known) == len(found):
+                assert known.min() <= high, f"{text.text} is not there"
+                assert known.max() >= low, f"{text.text} is not there"
 
 
 CAMPAIGNS = (Campaign("plans", "sheets of paper, measured", generate, examine),)

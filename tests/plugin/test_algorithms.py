@@ -9,10 +9,12 @@ import shutil
 import sys
 from pathlib import Path
 
+import ezdxf
 import numpy as np
 import pytest
 import rasterio
 from click import Choice
+from support.printed import read_pdf
 from support.qgis_jobs import (
     CUT,
     DEM,
@@ -130,12 +132,14 @@ def test_products_are_those_of_the_package(tmp_path, survey):
                         SECTION_INTERVAL=50, SECTION_WIDTH=20, OUTPUT=tmp_path / "cross.csv",
                         SECTIONS=tmp_path / "cross.gpkg"),
         "quantities": job("sections", INPUT="ground", DESIGN="flat", DESIGN_Z_FIELD="high",
-                          LINE="cut", INTERVAL=50, WIDTH=20, OUTPUT=tmp_path / "quantities.csv"),
+                          LINE="cut", INTERVAL=50, WIDTH=20, OUTPUT=tmp_path / "quantities.csv",
+                          SHEETS=tmp_path / "sections.dxf"),
         "stakes": job("stakeout", INPUT="ground", GROUND="flat", GROUND_Z_FIELD="high",
                       POINTS="points", LINE="cut", OUTPUT=tmp_path / "stakes.csv",
                       LAYER=tmp_path / "stakes.gpkg"),
         "volume": job("volume", INPUT="ground", BASE=325, REGIONS="site",
-                      OUTPUT=tmp_path / "volume.csv", ZONES=tmp_path / "zones.gpkg"),
+                      OUTPUT=tmp_path / "volume.csv", ZONES=tmp_path / "zones.gpkg",
+                      REPORT=tmp_path / "report.pdf"),
         "stages": job("stagestorage", INPUT="ground", INTERVAL=5, OUTPUT=tmp_path / "stages.csv"),
         "raster": job("raster", INPUT="ground", SPACING=2, OUTPUT=tmp_path / "raster.tif"),
         "light": job("raster", INPUT="ground", LIKE="dem", VALUE="hillshade",
@@ -203,6 +207,9 @@ def check_sections(told, tin, survey, folder):
     for name in ("station", "cut_total", "fill_total"):
         found = read_numbers(folder / "quantities.csv", name)
         np.testing.assert_array_equal(found, quantities[name])
+    texts = ezdxf.readfile(folder / "sections.dxf").modelspace().query("TEXT")
+    heads = [one.dxf.text for one in texts if one.dxf.text.startswith("Station ")]
+    assert len(heads) == len(quantities)
 
 
 def check_stakes(answer, tin, survey, folder):
@@ -228,6 +235,9 @@ def check_volumes(told, tin, folder):
     assert (zones["field"], zones["unclassified"], zones["crs"]) == ("kind", 0, UTM)
     stages = ts.stage_storage(tin, interval=5)
     np.testing.assert_array_equal(read_numbers(folder / "stages.csv", "volume"), stages["volume"])
+    report = " ".join(one.text for page in read_pdf(folder / "report.pdf") for one in page.texts)
+    for name in ("cut", "fill"):
+        assert all(f"{value:,.2f}" in report for value in wanted[name])
 
 
 def check_rasters(told, tin, folder):

@@ -22,6 +22,7 @@ class Text:
     rotation: float
     size: float
     name: str = ""
+    anchor: str = "start"
 
 
 @dataclass
@@ -70,8 +71,10 @@ def _read_text(one: Any, name: str, height: float) -> Text:
     rotation = -float(found[1]) if found else 0.0
     x, y = float(one.attrib["x"]), float(one.attrib["y"])
     size = float(re.search(r"font-size: ([\d.]+)px", one.attrib["style"])[1])
+    anchor = re.search(r"text-anchor: (\w+)", one.attrib["style"])
     place = np.array([x, height - y]) * MM
-    return Text("".join(one.itertext()), place, rotation, size * MM, name)
+    text = "".join(one.itertext())
+    return Text(text, place, rotation, size * MM, name, anchor[1] if anchor else "start")
 
 
 # ---------------------------------------------------------------- PDF

@@ -55,6 +55,7 @@ RESULTS = {
     "rasterize_heights": lambda tin: ts.rasterize_heights(tin, HILL.points, spacing=5.0),
     "ridges_and_valleys": ts.ridges_and_valleys,
     "section_lines": lambda tin: ts.section_lines(tin, LINE, interval=20.0, width=20.0),
+    "profile_sheets": lambda tin: ts.profile_sheets(tin, LINE),
     "section_sheets": lambda tin: ts.section_sheets(tin, LINE, interval=20.0, width=20.0),
     "section_volumes": lambda tin: ts.section_volumes(
         tin, ts.triangulate(HILL.points, crs=HILL.crs), LINE, interval=20.0, width=20.0

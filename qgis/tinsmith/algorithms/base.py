@@ -37,6 +37,8 @@ MESH_FILES = (
 )
 TABLE_FILES = "CSV table (*.csv);;JSON table (*.json)"
 PICTURES = "PNG picture (*.png)"
+REPORTS = "PDF document (*.pdf)"
+SHEETS = f"{REPORTS};;SVG pictures (*.svg);;DXF drawing (*.dxf)"
 
 
 class Run:

@@ -8,7 +8,7 @@ from qgis.core import QgsProcessing, QgsProcessingParameterVectorDestination
 
 from ..inputs import POINTS, Lines, Surface
 from ..options import describe, number, switch, text
-from .base import PICTURES, TABLE_FILES, CommandAlgorithm, Run
+from .base import PICTURES, SHEETS, TABLE_FILES, CommandAlgorithm, Run
 
 
 class SectionsAlgorithm(CommandAlgorithm):
@@ -49,16 +49,17 @@ class SectionsAlgorithm(CommandAlgorithm):
     )
 
     def add_outputs(self) -> None:
-        """Add the table and the diagram."""
+        """Add the table, the diagram and the drawn sections."""
         self.add_file_output("OUTPUT", "Table", TABLE_FILES, "A row for each section.")
         self.add_loading("Load the table")
         self.add_file_output("PICTURE", "Mass haul", PICTURES, "The diagram.", optional=True)
+        self.add_file_output("SHEETS", "Section sheets", SHEETS, "True to scale.", optional=True)
 
     def make(self, run: Run) -> dict[str, Any]:
         """Measure."""
         files = [word for one in self.surfaces for word in run.list_tin(one)]
         arguments = ["sections", *files, *run.list_lines(self.lines)]
-        paths, named = run.list_outputs("OUTPUT", "PICTURE")
+        paths, named = run.list_outputs("OUTPUT", "PICTURE", "SHEETS")
         run.run([*arguments, *run.list_options(self.options), *run.list_extra(), *named])
         self.load_later(run, paths["OUTPUT"], "Section volumes")
         return dict(paths)

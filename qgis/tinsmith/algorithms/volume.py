@@ -14,7 +14,7 @@ from ..inputs import POLYGONS, Lines, Surface
 from ..options import describe, number, text
 from ..results import style_on_loading
 from ..styles import style_earthwork
-from .base import PICTURES, TABLE_FILES, CommandAlgorithm, Run
+from .base import PICTURES, REPORTS, TABLE_FILES, CommandAlgorithm, Run
 
 _MEASURED = {"CUT": "cut", "FILL": "fill", "NET": "net", "AREA": "area"}
 _GROUND = Surface(words="Ground")
@@ -72,7 +72,7 @@ class VolumeAlgorithm(CommandAlgorithm):
     )
 
     def add_outputs(self) -> None:
-        """Add the table, the zones, a map, and sums for models."""
+        """Add the table, the zones, a map, a report, and sums for models."""
         self.add_file_output("OUTPUT", "Volumes", TABLE_FILES, "A row a region.")
         self.add_loading("Load the table")
         made = QgsProcessingParameterVectorDestination(
@@ -80,12 +80,13 @@ class VolumeAlgorithm(CommandAlgorithm):
         )
         self.addParameter(describe(made, "Polygons of what is cut and what is filled."))
         self.add_file_output("PICTURE", "Map", PICTURES, "Cut and fill drawn.", optional=True)
+        self.add_file_output("REPORT", "Report", REPORTS, "On paper, to sign.", optional=True)
         for name, word in _MEASURED.items():
             self.addOutput(QgsProcessingOutputNumber(name, word.capitalize()))
 
     def make(self, run: Run) -> dict[str, Any]:
         """Measure."""
-        paths, named = run.list_outputs("OUTPUT", "ZONES", "PICTURE")
+        paths, named = run.list_outputs("OUTPUT", "ZONES", "PICTURE", "REPORT")
         arguments = ["volume", *self._list_surfaces(run), *run.list_lines(self.lines)]
         arguments += [*run.list_options(self.options), *run.list_extra(), *named]
         rows = run.run(arguments)["rows"]

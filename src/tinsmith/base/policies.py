@@ -172,9 +172,6 @@ SheetLayout: TypeAlias = Literal["single", "rows", "strips"]
 ContourLabeling: TypeAlias = Literal["index", "all", "none"]
 """Which contours have their elevation written on them."""
 
-PointMarking: TypeAlias = Literal["none", "marks", "numbers", "elevations", "both"]
-"""What stands at the points of a plan."""
-
 GridStyle: TypeAlias = Literal["crosses", "lines", "none"]
 """How the coordinate grid of a plan is drawn."""
 

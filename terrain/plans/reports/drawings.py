@@ -13,10 +13,10 @@ from ....tin import Bounds
 from ...drawing import draw_north_up
 from ...sections import cross_sections
 from ..arrangement import Ground, choose_single
-from ..canvas import INK, Pen
 from ..footprint import Footprint, find_footprint
 from ..grid import draw_grid
 from ..mapping import OUTLINE_PEN
+from ..paper import INK, Pen
 from ..scales import Scale, describe_elevation_scale
 from ..sheets import TINTS, Cell, Section, choose_measures, draw_samples, list_sections
 from ..windows import outline
@@ -28,8 +28,7 @@ if TYPE_CHECKING:
     from ....base.crs import Unit
     from ....tin import TIN
     from ...earthwork import Difference
-    from ..canvas import Canvas, Drawable
-    from ..papers import Layout
+    from ..paper import Drawable, Layout
     from ..sheets import Measures, Units
     from ..windows import Window
 
@@ -84,7 +83,7 @@ def make_map(difference: Difference, layouts: Sequence[Layout], unit: Unit) -> M
     return Map(window, layout, scale, footprint, (west_east, south_north))
 
 
-def draw_map(canvas: Canvas, drawn: Map, difference: Difference) -> None:
+def draw_map(canvas: Drawable, drawn: Map, difference: Difference) -> None:
     """Draw what is cut and filled, the lines between, and where the sections are."""
     window = drawn.window
     zones, zero = draw_north_up(difference.zones), draw_north_up(difference.zero_line)

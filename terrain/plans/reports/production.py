@@ -2,35 +2,39 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple, Self
 
 from ....base import optional
 from ....base.checks import require_tin
-from ....base.notes import join_notes
 from ....base.products import product
 from ....base.sentences import counted
 from ....tin import Bounds
 from ...earthwork import difference, level_surface
-from ..canvas import Canvas
-from ..files import REPORT_SUFFIXES, list_files, write_sheets
-from ..lettering import PURPOSE
-from ..papers import Paper, arrange_sheet
+from ..paper import (
+    PURPOSE,
+    REPORT_SUFFIXES,
+    Document,
+    Drawable,
+    NoRoom,
+    join_no_room,
+)
 from ..scales import describe_factor, find_ground_unit, measure_scale_factor
 from ..sheets import Units, describe_elevations, draw_legend, draw_scales
 from ..title_block import (
     Caption,
-    describe_cut_texts,
+    arrange_sheets,
+    begin_caption,
+    describe_crs,
+    describe_factor_here,
     describe_missing_letters,
     draw_border,
     draw_title,
-    read_words,
 )
 from . import texts
 from .drawings import cut_profiles, draw_map, draw_map_legend, draw_profiles, make_map
 
 if TYPE_CHECKING:
     import datetime as dt
-    import os
     from collections.abc import Callable, Iterator, Sequence
     from pathlib import Path
 
@@ -39,7 +43,7 @@ if TYPE_CHECKING:
     from ....base.crs import UnitLike
     from ....tin import TIN
     from ...earthwork import Difference, ErrorModel
-    from ..papers import Layout, PaperLike
+    from ..paper import Layout, PaperLike
     from .drawings import Map, Profiles
 
 _UNTITLED = "Report of volumes"
@@ -58,7 +62,7 @@ class _Contents(NamedTuple):
     profiles: Profiles
 
 
-class VolumeReport:
+class VolumeReport(Document):
     """What was measured between two surfaces, on paper to sign; of :func:`tinsmith.volume_report`.
 
     Attributes
@@ -76,13 +80,19 @@ class VolumeReport:
     <VolumeReport: 3 pages, A4 portrait>
     """
 
+    _suffixes = REPORT_SUFFIXES
+    _what = "a report"
+
     def __init__(self, contents: _Contents, caption: Caption, notes: Sequence[str]) -> None:
-        self._contents = contents
+        super().__init__(contents.layout.paper, caption.title, notes)
         self._caption = caption
-        self.difference = contents.difference
-        self._notes = tuple(notes)
-        self._is_cut = False
         self._frame = _find_room(contents.layout)
+        self._lay_out(contents)
+
+    def _lay_out(self, contents: _Contents) -> None:
+        """Divide the text into pages, the notes at its end."""
+        self._contents = contents
+        self.difference = contents.difference
         told = texts.list_notes(self._notes, self._frame.width)
         noted = [texts.head("Notes"), *told] if self._notes else []
         self._pages = texts.divide(
@@ -93,15 +103,9 @@ class VolumeReport:
         return len(self._pages) + 2
 
     def __repr__(self) -> str:
-        paper = self._contents.layout.paper.name
-        return f"<VolumeReport: {counted(len(self), 'page')}, {paper}>"
+        return f"<VolumeReport: {counted(len(self), 'page')}, {self.paper_name}>"
 
-    @property
-    def notes(self) -> tuple[str, ...]:
-        """What was assumed or converted, and after :meth:`save` what had no room, in sentences."""
-        return (*self._notes, *describe_cut_texts(self._is_cut))
-
-    def with_notes(self, notes: Sequence[str]) -> VolumeReport:
+    def with_notes(self, notes: Sequence[str]) -> Self:
         """Return the same with further notes in front of its own, on its pages too.
 
         Examples
@@ -111,84 +115,24 @@ class VolumeReport:
         >>> ts.volume_report(ground, base=6.0).with_notes(["One row was left out."]).notes[0]
         'One row was left out.'
         """
-        joined = join_notes(notes, self._notes)
-        contents = self._contents._replace(difference=self.difference.with_notes(notes))
-        return VolumeReport(contents, self._caption, joined)
+        made = super().with_notes(notes)
+        made._lay_out(self._contents._replace(difference=self.difference.with_notes(notes)))
+        return made
 
-    def list_files(self, path: str | os.PathLike[str]) -> list[Path]:
-        """Return the name of the file that :meth:`save` writes, in a list.
-
-        Examples
-        --------
-        >>> import tinsmith as ts
-        >>> ground = ts.triangulate([[0, 0, 5], [40, 0, 6], [0, 30, 8]], crs="EPSG:32616")
-        >>> [file.name for file in ts.volume_report(ground, base=6.0).list_files("yard.pdf")]
-        ['yard.pdf']
-        """
-        return list_files(path, len(self), REPORT_SUFFIXES, "a report")
-
-    def save(self, path: str | os.PathLike[str]) -> list[Path]:
-        """Write the report as a PDF.
-
-        Parameters
-        ----------
-        path : path
-            Ends in .pdf.
-
-        Returns
-        -------
-        list of pathlib.Path
-            The file, which is written whole, or the old one is left as it was.
-
-        Raises
-        ------
-        OptionError
-            If the path is none.
-        RenderError
-            If the suffix is another.
-        WriteError
-            If the file cannot be written.
-        MissingExtraError
-            If matplotlib is not installed.
-
-        Examples
-        --------
-        >>> import tinsmith as ts
-        >>> from tempfile import TemporaryDirectory
-        >>> ground = ts.triangulate([[0, 0, 5], [40, 0, 6], [0, 30, 8]], crs="EPSG:32616")
-        >>> with TemporaryDirectory() as folder:
-        ...     [one.name for one in ts.volume_report(ground, base=6.0).save(f"{folder}/yard.pdf")]
-        ['yard.pdf']
-        """
-        files = self.list_files(path)
-        self._is_cut = False
-        paper = self._contents.layout.paper
-        size = (paper.width, paper.height)
-        return write_sheets(files, self._draw(), size, 100, self._caption.title)
-
-    def _draw(self) -> Iterator[Canvas]:
-        """Draw page after page, each when the one before is written."""
-        for number in range(len(self)):
-            canvas = Canvas(self._contents.layout.paper)
-            if not self._draw_page(canvas, number):
-                self._is_cut = True
-            yield canvas
-
-    def _draw_page(self, canvas: Canvas, number: int) -> bool:
-        """Draw a page, by its number from 0; tell whether all texts had room."""
+    def _draw_sheet(self, number: int, canvas: Drawable) -> NoRoom:
         layout = self._contents.layout
         draw_border(canvas, layout)
         caption = self._caption._replace(sheet=f"Page {number + 1} of {len(self)}")
-        if number < len(self._pages):
-            have_room = texts.draw_lines(canvas, self._pages[number], self._frame)
-            if number == len(self._pages) - 1:
-                texts.draw_signatures(canvas, self._frame)
-            return draw_title(canvas, layout, caption) and have_room
         if number == len(self._pages):
             return self._draw_map(canvas, caption)
-        return self._draw_profiles(canvas, caption)
+        if number > len(self._pages):
+            return self._draw_profiles(canvas, caption)
+        have_room = texts.draw_lines(canvas, self._pages[number], self._frame)
+        if number == len(self._pages) - 1:
+            texts.draw_signatures(canvas, self._frame)
+        return join_no_room([draw_title(canvas, layout, caption), NoRoom(not have_room)])
 
-    def _draw_map(self, canvas: Canvas, caption: Caption) -> bool:
+    def _draw_map(self, canvas: Drawable, caption: Caption) -> NoRoom:
         drawn, layout = self._contents.map, self._contents.layout
         draw_map(canvas, drawn, self._contents.difference)
         have_room = [
@@ -196,20 +140,20 @@ class VolumeReport:
             draw_scales(
                 canvas, layout, drawn.window.mm_per_unit, {"Map": drawn.scale.text}, caption.unit
             ),
-            draw_title(canvas, layout, caption._replace(scale=drawn.scale.text)),
         ]
-        return all(have_room)
+        titled = draw_title(canvas, layout, caption._replace(scale=drawn.scale.text))
+        return join_no_room([titled, NoRoom(not all(have_room))])
 
-    def _draw_profiles(self, canvas: Canvas, caption: Caption) -> bool:
+    def _draw_profiles(self, canvas: Drawable, caption: Caption) -> NoRoom:
         drawn, layout = self._contents.profiles, self._contents.layout
         scales = {"Offsets": drawn.scale.text, "Elevations": drawn.elevation_scale}
         have_room = [
             draw_profiles(canvas, drawn, self._frame),
             draw_legend(canvas, layout, drawn.measures[0].names),
             draw_scales(canvas, layout, drawn.measures[0].along, scales, caption.unit),
-            draw_title(canvas, layout, caption._replace(scale=drawn.scale.text)),
         ]
-        return all(have_room)
+        titled = draw_title(canvas, layout, caption._replace(scale=drawn.scale.text))
+        return join_no_room([titled, NoRoom(not all(have_room))])
 
 
 @product
@@ -227,6 +171,7 @@ def volume_report(
     paper: PaperLike = "A4",
     title: str | None = None,
     date: dt.date | str | None = None,
+    title_block: Any = None,
     ground_unit: UnitLike | None = None,
     progress: Callable[[float], None] | None = None,
 ) -> VolumeReport:
@@ -238,7 +183,7 @@ def volume_report(
         As of :func:`tinsmith.difference`.
     files : path or sequence of path, optional
         The file of each surface, whose name and SHA-256 are written.
-    paper, title, date, ground_unit
+    paper, title, date, title_block, ground_unit
         As of :func:`tinsmith.plan`; of a named paper in portrait. The default title is "Report of
         volumes".
     progress : callable, optional
@@ -276,12 +221,11 @@ def volume_report(
     array([266.67])
     """
     optional.load("matplotlib", PURPOSE)
-    words = read_words(title, date, _UNTITLED)
     require_tin(tin)
-    (layout,) = map(
-        arrange_sheet, Paper.choices(paper, "portrait" if isinstance(paper, str) else None)
-    )
     unit = find_ground_unit(tin.crs, ground_unit)
+    caption = begin_caption(title, date, title_block, untitled=_UNTITLED, unit=unit)
+    orientation = "portrait" if isinstance(paper, str) else None
+    (layout,) = arrange_sheets(paper, orientation, caption)
     found = difference(
         tin, other, base=base, regions=regions, standard_error=standard_error,
         other_standard_error=other_standard_error, level_of_detection=level_of_detection,
@@ -302,16 +246,16 @@ def volume_report(
     )
     own = measure_scale_factor(tin.crs, *tin.bounds.center)
     facts = (
-        f"CRS unknown, coordinates in {unit.symbol}" if tin.crs is None else tin.crs.caption,
+        describe_crs(tin.crs, unit),
         describe_elevations(units, found.tin.elevation_unit is not None),
-        *(() if own is None else (f"Scale factor of the CRS here {own:.6f}",)),
+        *describe_factor_here(own),
         _describe_program(),
     )
-    caption = Caption(words[0], facts, "", "", words[1], unit)
+    caption = caption._replace(facts=facts)
     notes = [
         *found.notes,
         *describe_factor(own, drawn.scale),
-        *describe_missing_letters([*words, *facts]),
+        *describe_missing_letters(caption),
     ]
     return VolumeReport(contents, caption, notes)
 

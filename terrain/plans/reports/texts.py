@@ -10,8 +10,7 @@ import numpy as np
 
 from ....base.atomic import as_path
 from ....base.errors import OptionError, ReadError
-from ..canvas import INK, Pen
-from ..lettering import clean_text, fit_text, measure_text
+from ..paper import INK, Pen, clean_text, fit_text, measure_text
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -20,7 +19,7 @@ if TYPE_CHECKING:
     from ....base.crs import Unit
     from ....base.results import Table
     from ....tin import TIN, Bounds
-    from ..canvas import Drawable
+    from ..paper import Drawable
 
 HEADING, PLAIN, SMALL = 3.4, 2.4, 1.9
 """Sizes of letters, millimetres."""

@@ -3,12 +3,14 @@
 from .cells import TINTS, Cell, Measures, Section, choose_measures
 from .gathering import Units, describe_elevations, list_sections
 from .legend import draw_legend, draw_samples, draw_scales
+from .long_profiles import ProfileSheets, profile_sheets
 from .production import SectionSheets, section_sheets
 
 __all__ = [
     "TINTS",
     "Cell",
     "Measures",
+    "ProfileSheets",
     "Section",
     "SectionSheets",
     "Units",
@@ -18,5 +20,6 @@ __all__ = [
     "draw_samples",
     "draw_scales",
     "list_sections",
+    "profile_sheets",
     "section_sheets",
 ]

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
     from ....base.crs import Unit
     from ....tin import Bounds
-    from ..papers import Layout
+    from ..paper import Layout
     from .cells import Measures, Section
 
 _GAP = 6.0

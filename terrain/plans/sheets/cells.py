@@ -10,14 +10,13 @@ import numpy as np
 
 from ....base.errors import OptionError
 from ...drawing import format_number, palette
-from ..canvas import INK, Pen
-from ..lettering import fit_text, measure_text
+from ..paper import INK, Pen, fit_text, measure_text
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from ....base.arrays import BoolArray, Float64Array
-    from ..canvas import Drawable
+    from ..paper import Drawable
     from ..scales import Scale
 
 HEAD, ROW = 10.0, 3.4
@@ -73,6 +72,8 @@ class Measures(NamedTuple):
     """Of the surfaces."""
     left: float
     """Millimetres beside the grid, for labels."""
+    rows: int = 0
+    """Rows below the figures of the surfaces."""
 
     @property
     def width(self) -> float:
@@ -83,7 +84,7 @@ class Measures(NamedTuple):
     @property
     def foot(self) -> float:
         """Of the figures below the grid, millimetres."""
-        return ROW * (1 + len(self.names)) + 1.0
+        return ROW * (1 + len(self.names) + self.rows) + 1.0
 
     def find_ends(self, section: Section) -> tuple[float, float]:
         """Return the elevations at the foot and at the top of the grid."""
@@ -151,6 +152,9 @@ def write_height(value: float) -> str:
 
 class Cell:
     """A section at its place on a sheet."""
+
+    head = "Offset"
+    """What figures along it are called."""
 
     def __init__(self, canvas: Drawable, measures: Measures, section: Section) -> None:
         self._canvas = canvas
@@ -240,10 +244,7 @@ class Cell:
         """Write offsets, and the elevations of each surface there, below the datum."""
         canvas, measures = self._canvas, self._measures
         offsets = self._list_offsets()
-        rows = [("Offset", INK, [_write(one, measures.steps[0]) for one in offsets])]
-        for number, name in enumerate(measures.names):
-            texts = [write_height(one) for one in self._interpolate(number, offsets)]
-            rows.append((name, find_pen(number).color, texts))
+        rows = self._list_figures(offsets)
         at = self._to_paper(np.array(offsets), np.full(len(offsets), self._datum))[:, 0]
         have_room = True
         for row, (name, color, texts) in enumerate(rows):
@@ -262,6 +263,17 @@ class Cell:
                 canvas.write((x, y), text, size=_SIZE, color=color, across="center", name="figure")
             have_room &= not fitted.is_cut
         return have_room
+
+    def _list_figures(self, offsets: Sequence[float]) -> list[tuple[str, str, list[str]]]:
+        """Return the name, the colour and the texts of each row."""
+        rows = [(self.head, INK, [self._write_offset(one) for one in offsets])]
+        for number, name in enumerate(self._measures.names):
+            texts = [write_height(one) for one in self._interpolate(number, offsets)]
+            rows.append((name, find_pen(number).color, texts))
+        return rows
+
+    def _write_offset(self, offset: float) -> str:
+        return _write(offset, self._measures.steps[0])
 
     def _interpolate(self, number: int, offsets: Sequence[float]) -> list[float]:
         """Return the elevations of a surface at offsets, straight between rows; NaN in gaps."""

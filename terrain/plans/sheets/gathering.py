@@ -10,8 +10,8 @@ import numpy as np
 from ....base.crs import assume_elevation_unit
 from ....base.errors import OptionError
 from ....base.sentences import counted
-from ...sections import measure_section_areas
-from ..lettering import clean_text
+from ...sections import Surfaces, measure_section_areas
+from ..paper import clean_text
 from .cells import Section
 
 if TYPE_CHECKING:
@@ -127,3 +127,10 @@ def describe_sections(table: Table, names: tuple[str, ...], unit: Unit) -> Itera
     yield f"{counted(count, 'section')}, stations {ends}"
     if len(names) > 1:
         yield f"Cut and fill from {names[0]} to {names[1]}"
+
+
+def describe_points(surfaces: Surfaces) -> str:
+    """Return what a title block says of the points of surfaces."""
+    counts = [counted(len(tin.points), "point") for tin in surfaces.tins]
+    named = zip(surfaces.names, counts, strict=True)
+    return "; ".join(f"{clean_text(name)}: {count}" if name else count for name, count in named)

@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ....tin import Bounds
-from ..canvas import GREY
-from ..lettering import fit_text
+from ..paper import GREY, fit_text
 from ..title_block import draw_scale_bar
 from ..windows import outline
 from .cells import ANGLES, AXIS_PEN, DATUM_PEN, GRID_PEN, HATCH_PENS, KINDS, TINTS, find_pen
@@ -17,8 +16,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from ....base.crs import Unit
-    from ..canvas import Drawable, Pen
-    from ..papers import Layout
+    from ..paper import Drawable, Layout, Pen
 
 _WIDEST, _SAMPLE = 46.0, 9.5
 """Millimetres on A4: of a column, and of a sample of a line."""

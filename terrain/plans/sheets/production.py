@@ -2,19 +2,22 @@
 
 from __future__ import annotations
 
-from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from ....base import optional
 from ....base.checks import as_number
-from ....base.notes import join_notes
 from ....base.products import product
 from ....base.sentences import counted
 from ...sections import as_reaches, as_surfaces, cross_sections
-from ..canvas import Canvas
-from ..files import SHEET_SUFFIXES, list_files, write_sheets
-from ..lettering import PURPOSE
-from ..papers import Paper, arrange_sheet
+from ..paper import (
+    PURPOSE,
+    SHEET_SUFFIXES,
+    Document,
+    Model,
+    NoRoom,
+    join_no_room,
+    name_layers,
+)
 from ..scales import (
     Scale,
     describe_elevation_scale,
@@ -24,18 +27,20 @@ from ..scales import (
 )
 from ..title_block import (
     Caption,
-    describe_cut_texts,
+    arrange_sheets,
+    begin_caption,
+    describe_crs,
+    describe_factor_here,
     describe_missing_letters,
     draw_border,
     draw_title,
-    read_words,
 )
 from .arrangement import Request, arrange
 from .cells import Cell
-from .dxf import name_layers, write_drawing
 from .gathering import (
     Units,
     describe_elevations,
+    describe_points,
     describe_sections,
     list_sections,
     name_surfaces,
@@ -44,20 +49,18 @@ from .legend import draw_legend, draw_scales
 
 if TYPE_CHECKING:
     import datetime as dt
-    import os
-    from collections.abc import Iterator, Mapping, Sequence
-    from pathlib import Path
+    from collections.abc import Mapping, Sequence
 
     from numpy.typing import ArrayLike
 
     from ....base.crs import UnitLike
     from ....tin import TIN
-    from ..canvas import Drawable
-    from ..papers import PaperLike
+    from ..paper import Drawable, PaperLike
     from .arrangement import Drawing
+    from .cells import Measures
 
 _UNTITLED = "Cross sections"
-_MOST_EXAGGERATED = 100.0
+MOST_EXAGGERATED = 100.0
 _LAYERS = {
     "": "SHEET",
     "grid": "GRID",
@@ -73,11 +76,13 @@ _LAYERS = {
     "areas-label": "LABELS",
     "figure-name": "LABELS",
     "figure": "LABELS",
+    "gradient": "GRADIENT",
+    "gradient-label": "GRADIENT",
 }
 """Layers of a drawing by what is drawn; surfaces have their own."""
 
 
-class SectionSheets:
+class SectionSheets(Document):
     """Cross sections on sheets of paper, ready to be written; of :func:`tinsmith.section_sheets`.
 
     Attributes
@@ -106,20 +111,19 @@ class SectionSheets:
     <SectionSheets: 4 sections on 1 sheet, A3 portrait, 1:100>
     """
 
+    _suffixes = SHEET_SUFFIXES
+    _what = "section sheets"
+
     def __init__(
         self, drawing: Drawing, exaggeration: float, caption: Caption, notes: Sequence[str]
     ) -> None:
+        super().__init__(drawing.layout.paper, caption.title, notes)
         self._drawing = drawing
         self._caption = caption
         self.scale = drawing.scale.denominator
         self.scale_text = drawing.scale.text
         self.exaggeration = exaggeration
-        paper = drawing.layout.paper
-        self.paper = (paper.width, paper.height)
-        self.paper_name = paper.name
         self.sections = len(drawing.sections)
-        self._notes = tuple(notes)
-        self._is_cut = False
 
     def __len__(self) -> int:
         return len(self._drawing.sheets)
@@ -128,100 +132,11 @@ class SectionSheets:
         what = f"{counted(self.sections, 'section')} on {counted(len(self), 'sheet')}"
         return f"<SectionSheets: {what}, {self.paper_name}, {self.scale_text}>"
 
-    @property
-    def notes(self) -> tuple[str, ...]:
-        """What was chosen or assumed, and after :meth:`save` what had no room, in sentences."""
-        return (*self._notes, *describe_cut_texts(self._is_cut))
+    def _find_model(self) -> Model:
+        """Return what drawings need to know: each surface has a layer of its own name."""
+        return make_model(self._caption, self._drawing.measures)
 
-    def with_notes(self, notes: Sequence[str]) -> SectionSheets:
-        """Return the same with further notes in front of its own.
-
-        Examples
-        --------
-        >>> import tinsmith as ts
-        >>> tin = ts.triangulate([[0, 0, 5], [40, 0, 6], [0, 30, 8]], crs="EPSG:32616")
-        >>> sheets = ts.section_sheets(tin, [[5, 5], [15, 5]], interval=10, width=4)
-        >>> sheets.with_notes(["One row was left out."]).notes[0]
-        'One row was left out.'
-        """
-        joined = join_notes(notes, self._notes)
-        return SectionSheets(self._drawing, self.exaggeration, self._caption, joined)
-
-    def list_files(self, path: str | os.PathLike[str]) -> list[Path]:
-        """Return the names of the files that :meth:`save` writes.
-
-        Examples
-        --------
-        >>> import tinsmith as ts
-        >>> tin = ts.triangulate([[0, 0, 5], [40, 0, 6], [0, 30, 8]], crs="EPSG:32616")
-        >>> sheets = ts.section_sheets(tin, [[5, 5], [15, 5]], interval=1, width=4, scale=20)
-        >>> [file.name for file in sheets.list_files("road.svg")]
-        ['road-1.svg', 'road-2.svg']
-        """
-        return list_files(path, len(self), SHEET_SUFFIXES, "section sheets")
-
-    def save(self, path: str | os.PathLike[str]) -> list[Path]:
-        """Write the sheets: as pages of a PDF, as SVGs, or side by side in one DXF drawing.
-
-        Parameters
-        ----------
-        path : path
-            Of several SVGs the names end in their numbers: road-1.svg, road-2.svg. A drawing is in
-            the CRS's own unit, so that a length in it along a section is that on the ground; each
-            surface has a layer of its own name.
-
-        Returns
-        -------
-        list of pathlib.Path
-            The files written: all of them whole, or the old ones are left as they were.
-
-        Raises
-        ------
-        OptionError
-            If the path is none.
-        RenderError
-            If the suffix is another.
-        WriteError
-            If a file cannot be written.
-        MissingExtraError
-            If matplotlib, or ezdxf for a drawing, is not installed.
-
-        Examples
-        --------
-        >>> import tinsmith as ts
-        >>> from tempfile import TemporaryDirectory
-        >>> tin = ts.triangulate([[0, 0, 5], [40, 0, 6], [0, 30, 8]], crs="EPSG:32616")
-        >>> sheets = ts.section_sheets(tin, [[5, 5], [15, 5]], interval=10, width=4)
-        >>> with TemporaryDirectory() as folder:
-        ...     [file.name for file in sheets.save(f"{folder}/road.pdf")]
-        ['road.pdf']
-        """
-        files = self.list_files(path)
-        self._is_cut = False
-        if files[0].suffix.lower() != ".dxf":
-            return write_sheets(files, self._draw(), self.paper, 100, self._caption.title)
-        named = name_layers(self._drawing.measures.names, sorted(set(_LAYERS.values())))
-        layers = {f"surface{number}": layer for number, layer in enumerate(named, 1)}
-        write_drawing(
-            files[0],
-            [partial(self._draw_sheet, number) for number in range(len(self))],
-            self.paper[0],
-            self._caption.unit,
-            self._drawing.measures.along,
-            _LAYERS | layers,
-            {"Title": self._caption.title, "Scale": self.scale_text},
-        )
-        return files
-
-    def _draw(self) -> Iterator[Canvas]:
-        """Draw sheet after sheet, each when the one before is written."""
-        for number in range(len(self)):
-            canvas = Canvas(self._drawing.layout.paper)
-            self._draw_sheet(number, canvas)
-            yield canvas
-
-    def _draw_sheet(self, number: int, canvas: Drawable) -> None:
-        """Draw a sheet, by its number from 0."""
+    def _draw_sheet(self, number: int, canvas: Drawable) -> NoRoom:
         drawn, layout = self._drawing, self._drawing.layout
         caption = self._caption._replace(sheet=f"Sheet {number + 1} of {len(self)}")
         draw_border(canvas, layout)
@@ -230,12 +145,19 @@ class SectionSheets:
         have_room = [
             draw_legend(canvas, layout, drawn.measures.names),
             draw_scales(canvas, layout, drawn.measures.along, scales, caption.unit),
-            draw_title(canvas, layout, caption),
         ]
         for spot in drawn.sheets[number]:
             cell = Cell(canvas, drawn.measures, drawn.sections[spot.section])
             have_room.append(cell.draw(spot.place))
-        self._is_cut |= not all(have_room)
+        return join_no_room([draw_title(canvas, layout, caption), NoRoom(not all(have_room))])
+
+
+def make_model(caption: Caption, measures: Measures) -> Model:
+    """Return how sheets lie in a drawing: each surface on a layer of its own name."""
+    named = name_layers(measures.names, sorted(set(_LAYERS.values())))
+    layers = {f"surface{number}": layer for number, layer in enumerate(named, 1)}
+    properties = {"Title": caption.title, "Scale": caption.scale}
+    return Model(caption.unit, measures.along, _LAYERS | layers, properties)
 
 
 @product
@@ -255,6 +177,7 @@ def section_sheets(
     orientation: str | None = None,
     title: str | None = None,
     date: dt.date | str | None = None,
+    title_block: Any = None,
     ground_unit: UnitLike | None = None,
 ) -> SectionSheets:
     """Draw cross sections on sheets true to scale, several to a sheet, with cut and fill.
@@ -269,7 +192,7 @@ def section_sheets(
         which four sections have room on a sheet.
     exaggeration : float
         How many times elevations are drawn larger than offsets.
-    paper, orientation, title, date, ground_unit
+    paper, orientation, title, date, title_block, ground_unit
         As of :func:`tinsmith.plan`; the default title is "Cross sections".
 
     Returns
@@ -309,11 +232,11 @@ def section_sheets(
     <SectionSheets: 6 sections on 1 sheet, A3 landscape, 1:200>
     """
     optional.load("matplotlib", PURPOSE)
-    words = read_words(title, date, _UNTITLED)
-    factor = as_number("exaggeration", exaggeration, above=0.0, most=_MOST_EXAGGERATED)
-    layouts = [arrange_sheet(one) for one in Paper.choices(paper, orientation)]
+    factor = as_number("exaggeration", exaggeration, above=0.0, most=MOST_EXAGGERATED)
     surfaces = as_surfaces(tin)
     unit = find_ground_unit(surfaces.crs, ground_unit)
+    caption = begin_caption(title, date, title_block, untitled=_UNTITLED, unit=unit)
+    layouts = arrange_sheets(paper, orientation, caption)
     units = Units.of(unit, surfaces.crs, surfaces.elevation_unit)
     asked = None if scale is None else Scale.of(scale, unit)
     reaches = as_reaches(width, left, right)
@@ -331,19 +254,17 @@ def section_sheets(
     drawing = arrange(request, layouts, asked)
     own = measure_scale_factor(surfaces.crs, *(float(table[name].mean()) for name in ("x", "y")))
     facts = [
-        f"CRS unknown, coordinates in {unit.symbol}"
-        if surfaces.crs is None
-        else surfaces.crs.caption,
+        describe_crs(surfaces.crs, unit),
         describe_elevations(units, surfaces.elevation_unit is not None),
         *describe_sections(table, drawing.measures.names, unit),
-        *([] if own is None else [f"Scale factor of the CRS here {own:.6f}"]),
+        describe_points(surfaces),
+        *describe_factor_here(own),
         f"True to scale on {drawing.layout.paper.name}",
     ]
-    caption = Caption(words[0], tuple(facts), drawing.scale.text, "", words[1], unit)
-    texts = [words[0], words[1], *facts, *drawing.measures.names]
+    caption = caption._replace(facts=tuple(facts), scale=drawing.scale.text)
     notes = [
         *table.notes,
         *describe_factor(own, drawing.scale),
-        *describe_missing_letters(texts),
+        *describe_missing_letters(caption, drawing.measures.names),
     ]
     return SectionSheets(drawing, factor, caption, notes)

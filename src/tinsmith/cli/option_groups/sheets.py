@@ -5,12 +5,20 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 import click
+from click.core import ParameterSource
 
-from ..parameters import Decorator, parsed, under
+from ...base.sentences import counted
+from ..parameters import Decorator, file_option, parsed, under
+from ..paths import Named
 from ..product_options import list_product_options
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Container, Sequence
+    from pathlib import Path
+
+    from ...terrain import ProfileSheets, SectionSheets
+    from ..output import Facts
+    from ..outputs import Products
 
 
 @parsed
@@ -35,6 +43,44 @@ def sheet_options(names: str) -> Decorator:
     return decorate
 
 
+def name_title_block(path: Path | None) -> list[Named]:
+    """Return the file of a title block and that of its logo, for the list of inputs."""
+    from ...terrain.plans import find_logo
+
+    if path is None:
+        return []
+    logo = find_logo(path)
+    named = [Named(path, "the file of --title-block")]
+    return named if logo is None else [*named, Named(logo, "the logo of --title-block")]
+
+
+def take_sheets(
+    asked: dict[str, Any], planned: Products, names: Sequence[str], what: str
+) -> dict[str, Any]:
+    """Take what sheets are asked for; refuse it where there are none."""
+    from ..outputs import list_document_suffixes
+
+    sheets = {name: asked.pop(name) for name in names}
+    if not planned.holds("sheets"):
+        context = click.get_current_context()
+        for name in names:
+            if context.get_parameter_source(name) is ParameterSource.COMMANDLINE:
+                flag = f"--{name.replace('_', '-')}"
+                suffixes = ", ".join(list_document_suffixes("sheets"))
+                raise click.UsageError(
+                    f"{flag} is for {what}: name a file that ends in {suffixes}."
+                )
+    return sheets
+
+
+def add_sheets(facts: Facts, drawn: SectionSheets | ProfileSheets, told: Container[str]) -> None:
+    """Add what was drawn, and notes that are not told already."""
+    facts.add("Scale", drawn.scale_text, scale=drawn.scale)
+    many = counted(len(drawn), "sheet")
+    facts.add("Sheets", f"{many}, {drawn.paper_name}", paper=list(drawn.paper), sheets=len(drawn))
+    facts.note(note for note in drawn.notes if note not in told)
+
+
 def _list_options(names: Sequence[str]) -> list[Decorator]:
     own = {
         "scale": click.option(
@@ -56,6 +102,11 @@ def _list_options(names: Sequence[str]) -> list[Decorator]:
             "--title",
             metavar="TEXT",
             help="Title of what is drawn; default the names of the files.",
+        ),
+        "title_block": file_option(
+            "--title-block",
+            "TOML file with what the office writes in its title block: company, client, project, "
+            "drawing number, names, revisions, logo.",
         ),
     }
     words = {

@@ -10,28 +10,53 @@ import click
 from ....base.sentences import counted
 from ...command import command
 from ...job import Job, name_features, surface_options
-from ...option_groups import sheet_options
+from ...option_groups import (
+    alignment_option,
+    name_title_block,
+    read_axis,
+    sheet_options,
+)
 from ...options import CONSOLE, READING, TRIANGULATING
 from ...output import Facts, note_written
-from ...parameters import file_option, input_file, number_option, output_option
+from ...parameters import file_option, input_file, number_option, output_option, parsed
 from ...paths import Named, make_title, require_separate
 from ...product_options import product_options
 
 _PLAN = "terrain.plans.production.plan"
 
 
+@parsed
+def _parse_spots(_flag: str, text: str) -> float | str | Path:
+    """Return a spacing, "peaks", or the file of points."""
+    try:
+        return float(text)
+    except ValueError:
+        return text if text == "peaks" else Path(text)
+
+
 @command
 @input_file("file")
-@output_option("Plan to write (.pdf, .svg, .png).", required=True)
-@sheet_options("scale paper orientation title date ground_unit")
+@output_option("Plan to write (.pdf, .svg, .png, .dxf).", required=True)
+@sheet_options("scale paper orientation title date title_block ground_unit")
 @product_options(_PLAN, "layout")
-@file_option("--axis", "Vector file of the axis of strips.", name="axis_file")
+@file_option(
+    "--axis", "Axis to draw, and of strips: LandXML, DXF, vector file or table.", name="axis_file"
+)
+@alignment_option("the file of --axis")
 @product_options(
     _PLAN,
-    "interval smooth labels points grid",
+    "station_interval station_range interval smooth labels points label_size decimals grid",
     smooth="Smooth contours, as long as the surface stays within this height of the level.",
-    points="Marks and labels of points.",
+    points="Points as 'marks', or labelled with some of numbers, elevations, codes: with commas "
+    "between them.",
+    label_size="Height of digits at points and spot heights, millimetres.",
     grid="Style of the coordinate grid.",
+)
+@click.option(
+    "--spots",
+    metavar="SPACING|peaks|FILE",
+    callback=_parse_spots,
+    help="Spot heights: on a grid, at peaks and pits, or at the points of a vector file.",
 )
 @number_option(
     "--dpi", "N", "Pixels per inch of a PNG.", type=click.IntRange(50, 1200), default=200
@@ -52,7 +77,11 @@ def plan(file: Path, job: Job, dpi: int, axis_file: Path | None, **asked: Any) -
 
     if asked["scale"] is None and asked["layout"] != "single":
         raise click.UsageError(f"--layout {asked['layout']} needs --scale.")
-    inputs = job.list_inputs(file, more=name_features(axis_file, "the file of --axis"))
+    spots = asked["spots"]
+    more = name_features(axis_file, "the file of --axis")
+    if isinstance(spots, Path):
+        more += name_features(spots, "the file of --spots")
+    inputs = job.list_inputs(file, more=[*more, *name_title_block(asked["title_block"])])
     require_separate(inputs, [Named(path, "--output") for path in job.outputs])
     for path in job.outputs:
         if path.suffix.lower() not in PLAN_SUFFIXES:
@@ -61,9 +90,10 @@ def plan(file: Path, job: Job, dpi: int, axis_file: Path | None, **asked: Any) -
             )
     tin, survey = job.read_surface(file)
     asked["title"] = asked["title"] or make_title(file)
-    axis = None
-    if axis_file is not None:
-        axis = job.read_features(axis_file, tin, "lines", "an axis is a line")
+    name = asked.pop("alignment")
+    axis = None if axis_file is None else read_axis(axis_file, name, crs=tin.crs)
+    if isinstance(spots, Path):
+        asked["spots"] = job.read_features(spots, tin, "points", "spot heights are at points")
     with job.step("Drawing"):
         made = terrain.plan(tin, axis=axis, survey=survey, **asked)
     written = []

@@ -7,10 +7,19 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from ....base.products import notes_of_surfaces
 from ....base.sentences import counted
 from ...command import command
 from ...job import Job, name_features
-from ...option_groups import axis_options, holds_alignments, read_axis
+from ...option_groups import (
+    add_sheets,
+    axis_options,
+    holds_alignments,
+    name_title_block,
+    read_axis,
+    sheet_options,
+    take_sheets,
+)
 from ...output import Facts, mesh_counts
 from ...parameters import LibraryOption, number_option, output_files, position_option
 from ...paths import INPUT, make_title
@@ -20,13 +29,14 @@ from ...tiling import choose_tiles, compute_tiles, describe_points, tiled_option
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from ....terrain import Features, Table
+    from ....terrain import Features, ProfileSheets, Table
     from ....tiled.cloud import TiledPoints
     from ....tin import TIN
     from ...output import Row
     from ...outputs import Products
 
 Pair = tuple[float, float]
+_OF_SHEETS = ("scale", "paper", "orientation", "date", "title_block", "ground_unit", "vertical")
 
 
 @command
@@ -52,10 +62,12 @@ Pair = tuple[float, float]
     multiple=True,
     help="Name of a surface, once for each; default the name of its file.",
 )
-@number_option("--exaggeration", "FACTOR", "Of the picture; chosen if absent.")
+@number_option("--exaggeration", "FACTOR", "Of a picture, where absent chosen, or of sheets.")
 @click.option(
     "--title", metavar="TEXT", help="Title of the picture; default the name of the first file."
 )
+@click.option("--vertical", metavar="NAME", help="Gradient line of the alignment on sheets.")
+@sheet_options("scale paper orientation date title_block ground_unit")
 @tiled_options()
 def profile(
     files: tuple[Path, ...],
@@ -69,8 +81,9 @@ def profile(
     """Compute profiles of the TINs in FILES, or built from the points in them, along a line.
 
     There is a row wherever the line crosses an edge of a TIN, with the elevations of all TINs.
-    Tables are written to .csv or .json, a picture to .png; cross sections also to .gpkg, .geojson
-    and others as 3D lines; their picture is a sheet. Lines in another CRS are reprojected.
+    Tables are written to .csv or .json, a picture to .png, sheets true to scale to .pdf, .svg or
+    .dxf; cross sections also to .gpkg, .geojson and others as 3D lines; their picture is a sheet.
+    Lines in another CRS are reprojected.
 
     Example:
       tinsmith profile sample_data/site_survey.csv --crs EPSG:32616 --codes
@@ -80,10 +93,13 @@ def profile(
     if (line_file is None) == (ends == 0) or ends == 1:
         raise click.UsageError("A line is needed: --line FILE, or --from X Y and --to X Y.")
     chosen, asked["is_named"] = _choose_names(files, names), bool(names)
-    inputs = job.list_inputs(*files, more=name_features(line_file, "the file of --line"))
-    with_sections = () if asked["sections"] is None else ("Features",)
-    planned = job.plan(inputs, "Table", *with_sections, "picture")
-    whole = "--sections" if with_sections else "a picture" if planned.holds("picture") else ""
+    more = name_features(line_file, "the file of --line")
+    inputs = job.list_inputs(*files, more=[*more, *name_title_block(asked["title_block"])])
+    with_sections = asked["sections"] is not None
+    planned = job.plan(inputs, "Table", "Features" if with_sections else "sheets", "picture")
+    sheets = take_sheets(asked, planned, _OF_SHEETS, "a drawn profile")
+    drawn = "a picture" if planned.holds("picture") or planned.holds("sheets") else ""
+    whole = "--sections" if with_sections else drawn
     cloud = choose_tiles(job, *files, whole=whole)
     if cloud is not None:
         _cut_tiles(cloud, planned, line_file or [begin, end], asked, job)
@@ -100,7 +116,12 @@ def profile(
     planned.write("Features", sections)
     planned.draw(lambda: figure)
     rows = [("Surface", f"{name}: {mesh_counts(tin)}") for name, tin in surfaces.items()]
-    job.finish(planned, _list_facts(files, table, rows, getattr(lines, "notes", ())))
+    facts = _list_facts(files, table, rows, getattr(lines, "notes", ()))
+    if planned.holds("sheets"):
+        made = _draw_sheets(surfaces, lines, files, asked | sheets)
+        planned.save(made)
+        add_sheets(facts, made, {*table.notes, *notes_of_surfaces(surfaces.values())})
+    job.finish(planned, facts)
 
 
 def _cut_tiles(
@@ -182,6 +203,17 @@ def _draw(
     what, draw = ("Profile", profile_picture) if is_profile else ("Cross sections", section_picture)
     title = asked["title"] or f"{what}: {make_title(files[0])}"
     return draw(table, exaggeration=asked["exaggeration"], title=title, crs=crs)
+
+
+def _draw_sheets(
+    surfaces: dict[str, TIN], lines: Any, files: Sequence[Path], asked: dict[str, Any]
+) -> ProfileSheets:
+    from ....terrain import profile_sheets
+
+    how = {name: asked[name] for name in (*_OF_SHEETS, "start")}
+    title = asked["title"] or f"Profile: {make_title(files[0])}"
+    exaggeration = 10.0 if asked["exaggeration"] is None else asked["exaggeration"]
+    return profile_sheets(surfaces, lines, title=title, exaggeration=exaggeration, **how)
 
 
 def _find_range(values: Any) -> list[float | None]:

@@ -7,25 +7,32 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
-from click.core import ParameterSource
 
 from ....base.products import notes_of_surfaces
-from ....base.sentences import counted
 from ...command import command
 from ...job import Job, name_features, surface_options
-from ...option_groups import axis_options, holds_alignments, read_axis, sheet_options
+from ...option_groups import (
+    add_sheets,
+    axis_options,
+    holds_alignments,
+    name_title_block,
+    read_axis,
+    sheet_options,
+    take_sheets,
+)
 from ...output import Facts, list_rows, mesh_counts, name_units
-from ...outputs import list_document_suffixes
 from ...parameters import number_option, output_option
 from ...paths import INPUT, make_title
 from ...product_options import product_options
 
 if TYPE_CHECKING:
-    from ....terrain import SectionSheets, Table
+    from ....terrain import Table
     from ...output import Row
-    from ...outputs import Products
 
-_OF_SHEETS = ("scale", "paper", "orientation", "title", "date", "ground_unit", "exaggeration")
+_OF_SHEETS = (
+    *("scale", "paper", "orientation", "title", "date", "title_block", "ground_unit"),
+    "exaggeration",
+)
 
 
 @command
@@ -48,7 +55,7 @@ _OF_SHEETS = ("scale", "paper", "orientation", "title", "date", "ground_unit", "
 @number_option(
     "--exaggeration", "FACTOR", "How many times elevations are drawn larger.", default=1.0
 )
-@sheet_options("scale paper orientation title date ground_unit")
+@sheet_options("scale paper orientation title date title_block ground_unit")
 @surface_options()
 def sections(ground: Path, design: Path, line_file: Path | None, job: Job, **asked: Any) -> None:
     """Compute cut and fill from the TIN in GROUND to that in DESIGN, section by section.
@@ -69,8 +76,9 @@ def sections(ground: Path, design: Path, line_file: Path | None, job: Job, **ask
     if asked["interval"] is None:
         raise click.UsageError("The interval of the sections is needed: --interval LENGTH.")
     more = name_features(line_file, "the file of --line")
+    more += name_title_block(asked["title_block"])
     planned = job.plan(job.list_inputs(ground, design, more=more), "Table", "picture", "sheets")
-    sheets = _take_sheets(asked, planned)
+    sheets = take_sheets(asked, planned, _OF_SHEETS, "drawn sections")
     surfaces = job.read_tins([ground, design])
     first, second = surfaces
     axis = read_axis(line_file, asked.pop("alignment"), crs=first.crs)
@@ -95,31 +103,8 @@ def sections(ground: Path, design: Path, line_file: Path | None, job: Job, **ask
     rows = list(zip(("Ground", "Design"), map(mesh_counts, surfaces), strict=True))
     facts = _list_facts([ground, design], table, rows)
     if drawn is not None:
-        _add_sheets(facts, drawn, {*table.notes, *notes_of_surfaces(surfaces)})
+        add_sheets(facts, drawn, {*table.notes, *notes_of_surfaces(surfaces)})
     job.finish(planned, facts)
-
-
-def _take_sheets(asked: dict[str, Any], planned: Products) -> dict[str, Any]:
-    """Take what sheets are asked for; refuse it where there are none."""
-    sheets = {name: asked.pop(name) for name in _OF_SHEETS}
-    if not planned.holds("sheets"):
-        context = click.get_current_context()
-        for name in _OF_SHEETS:
-            if context.get_parameter_source(name) is ParameterSource.COMMANDLINE:
-                flag = f"--{name.replace('_', '-')}"
-                suffixes = ", ".join(list_document_suffixes("sheets"))
-                raise click.UsageError(
-                    f"{flag} is for drawn sections: name a file that ends in {suffixes}."
-                )
-    return sheets
-
-
-def _add_sheets(facts: Facts, drawn: SectionSheets, told: set[str]) -> None:
-    """Add what was drawn, and notes that are not told already."""
-    facts.add("Scale", drawn.scale_text, scale=drawn.scale)
-    many = counted(len(drawn), "sheet")
-    facts.add("Sheets", f"{many}, {drawn.paper_name}", paper=list(drawn.paper), sheets=len(drawn))
-    facts.note(note for note in drawn.notes if note not in told)
 
 
 def _list_facts(files: list[Path], table: Table, rows: list[Row]) -> Facts:

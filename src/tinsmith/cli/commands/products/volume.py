@@ -12,7 +12,7 @@ from ....base.sentences import counted
 from ...command import command
 from ...error_options import error_options, name_flag, take_errors
 from ...job import Job, name_features
-from ...option_groups import sheet_options
+from ...option_groups import name_title_block, sheet_options
 from ...output import Facts, list_rows, mesh_counts, name_units
 from ...parameters import file_option, number_option, output_option
 from ...paths import INPUT, STANDARD, make_title
@@ -59,7 +59,7 @@ _LEAST_AREA = 0.005
 )
 @number_option("--level", "ELEVATION", "Level of the table.", name="levels", multiple=True)
 @number_option("--interval", "LENGTH", "Interval of the levels of the table.")
-@sheet_options("title date ground_unit")
+@sheet_options("title date title_block ground_unit")
 @error_options
 @tiled_options()
 def volume(files: tuple[Path, ...], regions: Path | None, job: Job, **asked: Any) -> None:
@@ -80,7 +80,8 @@ def volume(files: tuple[Path, ...], regions: Path | None, job: Job, **asked: Any
 
     errors = take_errors(asked)
     _require_one_base(files, asked, errors)
-    inputs = job.list_inputs(*files, more=name_features(regions, "the file of --regions"))
+    more = name_features(regions, "the file of --regions")
+    inputs = job.list_inputs(*files, more=[*more, *name_title_block(asked["title_block"])])
     kinds = ["Table"] if asked["stage_storage"] else ["Table", "Features", "picture", "report"]
     planned = job.plan(inputs, *kinds)
     words = _take_words(files, asked, planned)
@@ -136,7 +137,7 @@ def _name_whole(asked: dict[str, Any], planned: Products, errors: dict[str, Any]
 
 def _take_words(files: Sequence[Path], asked: dict[str, Any], planned: Products) -> dict[str, Any]:
     """Take what a report says; refuse it where there is none."""
-    words = {name: asked.pop(name) for name in ("date", "ground_unit")}
+    words = {name: asked.pop(name) for name in ("date", "title_block", "ground_unit")}
     if planned.holds("report"):
         if STANDARD in files:
             raise click.UsageError(

@@ -8,20 +8,22 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from ...base import optional
-from .. import drawing
-from .windows import turn
+from ....base import optional
+from ... import drawing
+from ..windows import turn
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from ...base.arrays import Float64Array
-    from ...tin import Bounds
-    from ..drawing import Lettering
+    from ....base.arrays import Float64Array
+    from ....tin import Bounds
+    from ...drawing import Lettering
 
 FONT = "DejaVu Sans"
 """Comes with matplotlib, and is embedded in a PDF."""
 PURPOSE = "A plan"
+CAPITAL = 0.73
+"""Height of capitals and digits by the size of letters."""
 
 _ODD_LETTER = "\N{REPLACEMENT CHARACTER}"
 _SMALLER = 0.94
@@ -142,13 +144,22 @@ class Room:
             return False
         if not (frame.ymin <= low[1] and high[1] <= frame.ymax):
             return False
-        (left, bottom), (right, top) = ((one // _CELL).astype(int).tolist() for one in (low, high))
-        cells = [(i, j) for i in range(left, right + 1) for j in range(bottom, top + 1)]
+        cells = _list_cells(corners)
         if any(_overlap(corners, other) for cell in cells for other in self._taken.get(cell, ())):
             return False
-        for cell in cells:
-            self._taken.setdefault(cell, []).append(corners)
+        self.occupy(corners)
         return True
+
+    def occupy(self, corners: Float64Array) -> None:
+        """Leave a rectangle to what is drawn there, whatever it meets."""
+        for cell in _list_cells(corners):
+            self._taken.setdefault(cell, []).append(corners)
+
+
+def _list_cells(corners: Float64Array) -> list[tuple[int, int]]:
+    ends = (corners.min(axis=0), corners.max(axis=0))
+    (left, bottom), (right, top) = ((one // _CELL).astype(int).tolist() for one in ends)
+    return [(i, j) for i in range(left, right + 1) for j in range(bottom, top + 1)]
 
 
 def _overlap(one: Float64Array, other: Float64Array) -> bool:

@@ -5,25 +5,26 @@ from __future__ import annotations
 import io
 from contextlib import contextmanager
 from importlib import import_module
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from ....base import optional
 from ....base.atomic import replacing
 from ....base.crs import FOOT, METRE, US_SURVEY_FOOT
-from ..canvas import HATCH_SPACING, INK
+from .canvas import HATCH_SPACING, PLAIN
+from .lettering import CAPITAL
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping, Sequence
     from pathlib import Path
+    from typing import Unpack
 
-    from ....base.arrays import Float64Array
+    from ....base.arrays import AnyArray, Float64Array
     from ....base.crs import Unit
-    from ..canvas import Drawable, Pen
+    from ....tin import Bounds
+    from .canvas import Drawable, Pen, TextStyle
 
-_CAPITAL = 0.73
-"""Height of capitals, which DXF measures texts by, by the size of letters."""
 _WEIGHTS = np.array([13, 18, 25, 35, 50, 70, 100])
 """Widths of lines that drawings have, hundredths of a millimetre."""
 _CODES = {METRE: 6, FOOT: 2, US_SURVEY_FOOT: 21}
@@ -40,30 +41,33 @@ _FOREGROUND = 7
 """The number that is black on white windows, and white on black ones."""
 
 
-def write_drawing(
-    path: Path,
-    drawers: Sequence[Callable[[Drawable], None]],
-    width: float,
-    unit: Unit,
-    mm_per_unit: float,
-    layers: Mapping[str, str],
-    properties: Mapping[str, str],
-) -> None:
-    """Write sheets of a width in millimetres, each drawn by a function, from left to right.
+class Model(NamedTuple):
+    """How sheets lie in the model space of a drawing."""
 
-    ``layers`` are the names of layers by those of what is drawn; what is in none of them is on the
-    layer of "".
-    """
+    unit: Unit
+    mm_per_unit: float
+    """Length of a unit on paper."""
+    layers: Mapping[str, str]
+    """Names of layers by those of what is drawn; what is in none of them is on the layer of ""."""
+    properties: Mapping[str, str]
+    origin: tuple[float, float] = (0.0, 0.0)
+    """Coordinates of the lower left corner of the first sheet."""
+
+
+def write_drawing(
+    path: Path, drawers: Sequence[Callable[[Drawable], None]], width: float, model: Model
+) -> None:
+    """Write sheets of a width in millimetres, each drawn by a function, from left to right."""
     ezdxf = optional.load("ezdxf", "Sheets as a drawing")
     with _fix_dates():
         document = ezdxf.new("R2010")
-        document.header["$INSUNITS"] = _CODES.get(unit, 0)
-        document.header["$MEASUREMENT"] = int(unit not in (FOOT, US_SURVEY_FOOT))
+        document.header["$INSUNITS"] = _CODES.get(model.unit, 0)
+        document.header["$MEASUREMENT"] = int(model.unit not in (FOOT, US_SURVEY_FOOT))
         document.styles.add(_STYLE, font="arial.ttf")
-        for name, value in properties.items():
+        for name, value in model.properties.items():
             document.header.custom_vars.append(name, value)
         for number, draw in enumerate(drawers):
-            draw(DxfCanvas(document, number * (width + _SPACE), 1.0 / mm_per_unit, layers))
+            draw(DxfCanvas(document, number * (width + _SPACE), model))
         zoom = optional.load("ezdxf.zoom", "Sheets as a drawing")
         zoom.extents(document.modelspace())
         stream = io.StringIO(newline="\n")
@@ -109,14 +113,13 @@ def name_layers(names: Sequence[str], taken: Sequence[str]) -> list[str]:
 class DxfCanvas:
     """A sheet in the model space of a drawing."""
 
-    def __init__(
-        self, document: Any, left: float, units_per_mm: float, layers: Mapping[str, str]
-    ) -> None:
+    def __init__(self, document: Any, left: float, model: Model) -> None:
         self._document = document
         self._space = document.modelspace()
         self._left = left
-        self._factor = units_per_mm
-        self._layers = layers
+        self._origin = np.array(model.origin)
+        self._factor = 1.0 / model.mm_per_unit
+        self._layers = model.layers
 
     def draw_paths(self, parts: Sequence[Float64Array], pen: Pen, name: str) -> None:
         """Draw polylines in the plane, on the layer of what they are."""
@@ -147,31 +150,28 @@ class DxfCanvas:
         hatch.paths.add_polyline_path(self._place(ring[:-1]).tolist(), is_closed=True)
 
     def write(
-        self,
-        place: tuple[float, float],
-        text: str,
-        *,
-        size: float,
-        color: str = INK,
-        rotation: float = 0.0,
-        across: str = "left",
-        up: str = "baseline",
-        name: str | None = None,
+        self, place: tuple[float, float], text: str, *, size: float, **how: Unpack[TextStyle]
     ) -> None:
         """Write a text on one line; ``size`` is that of its letters in millimetres."""
-        how = self._style(name or "", color) | {"style": _STYLE, "rotation": rotation}
-        made = self._space.add_text(text, height=_CAPITAL * size * self._factor, dxfattribs=how)
+        style = PLAIN | how
+        given = self._style(style["name"], style["color"])
+        given |= {"style": _STYLE, "rotation": style["rotation"]}
+        made = self._space.add_text(text, height=CAPITAL * size * self._factor, dxfattribs=given)
         heights = {"center_baseline": "MIDDLE", "center": "MIDDLE", "top": "TOP"}
         enums = optional.load("ezdxf.enums", "Sheets as a drawing")
-        row = heights.get(up, "")
-        word = f"{row}_{across.upper()}" if row else across.upper()
+        row, across = heights.get(style["up"], ""), style["across"].upper()
+        word = f"{row}_{across}" if row else across
         at = self._place(np.array([place], np.float64))[0].tolist()
         made.set_placement(at, align=enums.TextEntityAlignment[word])
 
+    def draw_picture(self, _box: Bounds, _picture: AnyArray) -> bool:
+        """Draw none: a drawing would need the picture's file beside it."""
+        return False
+
     def _place(self, mm: Float64Array) -> Float64Array:
-        placed: Float64Array = (
+        placed: Float64Array = self._origin + self._factor * (
             np.asarray(mm, np.float64) + np.array([self._left, 0.0])
-        ) * self._factor
+        )
         return placed
 
     def _style(self, name: str, color: str) -> dict[str, Any]:

@@ -5,20 +5,21 @@ from __future__ import annotations
 import warnings
 from collections import Counter
 from contextlib import contextmanager
-from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
+from typing import TYPE_CHECKING, Any, NamedTuple, Protocol, TypedDict
 
 import numpy as np
 
-from ...base import optional
-from ..drawing import palette
+from ....base import optional
+from ...drawing import palette
 from .lettering import FONT, PURPOSE
 from .papers import MM_PER_INCH
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
-    from typing import IO
+    from typing import IO, Unpack
 
-    from ...base.arrays import Float64Array
+    from ....base.arrays import AnyArray, Float64Array
+    from ....tin import Bounds
     from .papers import Paper
 
 INK = palette.INK_PLAN
@@ -68,6 +69,29 @@ def drawing_rules() -> Iterator[None]:
         yield
 
 
+class TextStyle(TypedDict, total=False):
+    """How a text is drawn; each has a usual value, that of ``PLAIN``."""
+
+    color: str
+    rotation: float
+    """Degrees counter-clockwise."""
+    across: str
+    """Which end of it is at its place: "left", "center", "right"."""
+    up: str
+    """Which height of it is: "baseline", "center_baseline", "top"."""
+    name: str
+    """What it is: its layer in a drawing, its identifier in an SVG."""
+
+
+PLAIN: TextStyle = {
+    "color": INK,
+    "rotation": 0.0,
+    "across": "left",
+    "up": "baseline",
+    "name": "",
+}
+
+
 class Drawable(Protocol):
     """What a sheet is drawn on, in millimetres from its lower left corner."""
 
@@ -75,24 +99,18 @@ class Drawable(Protocol):
         """Draw polylines; ``name`` is what they are."""
 
     def fill(self, rings: Sequence[Float64Array], color: str, name: str) -> None:
-        """Fill the area within rings, each closed."""
+        """Fill the area within rings, each closed; what lies in two of them is left out."""
 
     def hatch(self, ring: Float64Array, pen: Pen, angle: float, name: str) -> None:
         """Draw parallel lines within a ring, 2 mm apart, at an angle in degrees."""
 
     def write(
-        self,
-        place: tuple[float, float],
-        text: str,
-        *,
-        size: float,
-        color: str = INK,
-        rotation: float = 0.0,
-        across: str = "left",
-        up: str = "baseline",
-        name: str | None = None,
+        self, place: tuple[float, float], text: str, *, size: float, **how: Unpack[TextStyle]
     ) -> None:
-        """Write a text on one line."""
+        """Write a text on one line; ``size`` is that of its letters in millimetres."""
+
+    def draw_picture(self, box: Bounds, picture: AnyArray) -> bool:
+        """Draw a picture in a box, (rows, columns, 4); tell whether pictures can be drawn."""
 
 
 class Canvas:
@@ -146,31 +164,36 @@ class Canvas:
         self.draw_paths(hatch_ring(ring, angle), pen, name)
 
     def write(
-        self,
-        place: tuple[float, float],
-        text: str,
-        *,
-        size: float,
-        color: str = INK,
-        rotation: float = 0.0,
-        across: str = "left",
-        up: str = "baseline",
-        name: str | None = None,
+        self, place: tuple[float, float], text: str, *, size: float, **how: Unpack[TextStyle]
     ) -> None:
         """Write a text on one line; ``size`` is that of its letters in millimetres."""
+        style = PLAIN | how
         self._axes.text(
             *place,
             text,
             fontsize=POINTS_PER_MM * size,
-            color=color,
-            rotation=rotation,
+            color=style["color"],
+            rotation=style["rotation"],
             rotation_mode="anchor",
-            ha=across,
-            va=up,
+            ha=style["across"],
+            va=style["up"],
             parse_math=False,
-            gid=None if name is None else self._choose_name(name),
+            gid=self._choose_name(style["name"]) if style["name"] else None,
             zorder=self._take_order(),
         )
+
+    def draw_picture(self, box: Bounds, picture: AnyArray) -> bool:
+        """Draw a picture in a box, (rows, columns, 4)."""
+        shown = optional.load("matplotlib.image", PURPOSE).AxesImage(
+            self._axes,
+            extent=(box.xmin, box.xmax, box.ymin, box.ymax),
+            interpolation="none",
+            zorder=self._take_order(),
+        )
+        shown.set_data(picture)
+        shown.set_gid(self._choose_name("picture"))
+        self._axes.add_artist(shown)
+        return True
 
     def save(self, stream: IO[bytes], kind: str, *, dpi: int) -> None:
         """Write the sheet as PDF, SVG or PNG, with no clock and no version in its bytes."""

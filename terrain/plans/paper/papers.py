@@ -4,18 +4,17 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, get_args
+from typing import TYPE_CHECKING, Any, TypeAlias, get_args
 
-from ...base.checks import is_finite_number
-from ...base.errors import OptionError, choice
-from ...base.policies import PaperOrientation
-from ...tin import Bounds
+from ....base.checks import is_finite_number
+from ....base.errors import OptionError, choice
+from ....base.policies import PaperOrientation
+from ....tin import Bounds
 
 if TYPE_CHECKING:
-    from typing import TypeAlias
+    from collections.abc import Callable
 
-    PaperLike: TypeAlias = "str | tuple[float, float]"
-
+PaperLike: TypeAlias = "str | tuple[float, float]"
 
 MM_PER_INCH = 25.4
 
@@ -134,14 +133,18 @@ class Layout:
     scales: Bounds
     title: Bounds
     """All three are cells of the title block."""
+    office: Bounds
+    """Below them, for what the office says; it may have no height."""
 
 
-def arrange_sheet(paper: Paper) -> Layout:
+def arrange_sheet(paper: Paper, measure_office: Callable[[float], float] | None = None) -> Layout:
     """Return the layout of a sheet: the title block below the map, all of its width.
+
+    ``measure_office`` returns the height of what the office says, of a width, both as on A4.
 
     Examples
     --------
-    >>> from tinsmith.terrain.plans.papers import Paper
+    >>> from tinsmith.terrain.plans.paper import Paper
     >>> frame = arrange_sheet(Paper.choices("A4", "landscape")[0]).frame
     >>> frame.width, frame.height
     (269.0, 142.0)
@@ -150,7 +153,9 @@ def arrange_sheet(paper: Paper) -> Layout:
     factor = min(factor, (paper.width - 2 * _MARGIN) / (_TITLE + _SCALES + 46.0))
     left, right = _MARGIN, paper.width - _MARGIN
     low, top = _MARGIN, paper.height - _MARGIN
-    block = low + _BLOCK * factor
+    band = factor * measure_office((right - left) / factor) if measure_office else 0.0
+    foot = low + band
+    block = foot + _BLOCK * factor
     title = right - _TITLE * factor
     scales = title - _SCALES * factor
     return Layout(
@@ -158,7 +163,8 @@ def arrange_sheet(paper: Paper) -> Layout:
         factor=factor,
         border=Bounds(left, low, right, top),
         frame=Bounds(left + _LABELS, block + _LABELS, right - _LABELS, top - _LABELS),
-        legend=Bounds(left, low, scales, block),
-        scales=Bounds(scales, low, title, block),
-        title=Bounds(title, low, right, block),
+        legend=Bounds(left, foot, scales, block),
+        scales=Bounds(scales, foot, title, block),
+        title=Bounds(title, foot, right, block),
+        office=Bounds(left, low, right, foot),
     )
