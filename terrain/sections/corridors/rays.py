@@ -102,7 +102,25 @@ class _Laying:
             if not len(between.sides):
                 break
             rays = rays.join(between)
-        return rays if len(rays.sides) == count else self._match(rays)
+        return self._mirror(rays if len(rays.sides) == count else self._match(rays))
+
+    def _mirror(self, rays: Rays) -> Rays:
+        """Return rays with those of the other side where that begins at the axis without a part.
+
+        So the edge of the bed there, which is the axis, and the side slopes have the same vertices.
+        """
+        for side in (-1, 1):
+            is_own = rays.sides == side
+            lost = np.setdiff1d(rays.stations[~is_own], rays.stations[is_own])
+            lost = lost[self._reach.design.lay(side, lost).offsets[:, -1] <= NEAR]
+            if not len(lost):
+                continue
+            sides, turns = np.full(len(lost), side), np.zeros(len(lost))
+            origins, ways = self._axis.points_at(lost), self._find_ways(sides, lost)
+            limits = self._find_limits(origins, ways, self._find_caps(sides, lost))
+            ends = origins + limits[:, None] * ways
+            rays = rays.join(Rays(sides, lost, turns, origins, ways, limits, ends))
+        return rays
 
     def _match(self, rays: Rays) -> Rays:
         """Return rays with those at crossings, and those of other stations to their ends."""

@@ -382,3 +382,17 @@ def test_a_slope_in_percent_is_refused():
     axis = [[10, 30, 7], [50, 30, 7]]
     with pytest.raises(ts.OptionError, match=r"slope of superelevation 4\.0"):
         ts.corridor(ground, axis, template, superelevation=[[0, -2.5e-2, 4.0]])
+
+
+@pytest.mark.parametrize("seed", [2, 8])
+def test_side_slopes_that_begin_at_the_axis_meet_the_ground(seed):
+    rng = np.random.default_rng(seed)
+    xy = np.concatenate([rng.uniform(0, 160, (300, 2)), [[0, 0], [160, 0], [160, 160], [0, 160]]])
+    ground = ts.triangulate(np.column_stack([xy, 50.0 + rng.normal(0, 0.15, len(xy))]))
+    left = ts.Side([ts.Part("lane", 3, -0.03)], cut_slope=2, fill_slope=2)
+    right = ts.Side([], cut_slope=0.5, fill_slope=1.5)
+    axis = ts.Alignment.from_points([[40, 80], [80, 80], [110, 110]], radii=2.0, transitions=1.0)
+    tops = [(0.0, 49.5), (axis.end / 2, 50.6, "parabola", 30, 30), (axis.end, 49.5)]
+    axis = replace(axis, verticals=[ts.VerticalAlignment([ts.VerticalPoint(*one) for one in tops])])
+    made = ts.corridor(ground, axis, ts.Template(left, right), tolerance=0.1)
+    assert not any("Along the seam" in note for note in made.report.notes)
