@@ -244,9 +244,9 @@ def _require_heights(case: Case, ground: Any, made: Any, sections: _Sections, st
         station, offset = float(stations[k]), float(offsets[k])
         is_ground = abs(found[k] - own[k]) <= 1e-6
         if np.isnan(station):
-            beyond = shapely.distance(
-                shapely.multipoints(axis.points_at([axis.start, axis.end])), shapely.Point(xy[k])
-            )
+            ends = np.array([axis.start, axis.end])
+            away = xy[k] - axis.points_at(ends)
+            beyond = np.abs((away * axis.tangents_at(ends)).sum(axis=1)).min()
             assert is_ground or beyond < 0.01, f"the ground is another at {xy[k]}"
             continue
         side = -1 if offset < 0 else 1

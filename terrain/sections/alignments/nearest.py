@@ -136,6 +136,7 @@ def _drop_perpendiculars(
     away = np.hypot(*np.moveaxis(points - ends, -1, 0))
     at = np.where(away[0] <= away[1], low, high)
     open_ = np.flatnonzero(is_inside)
+    rounding = 4.0 * np.spacing(np.maximum(high, np.abs(points).max(axis=1, initial=0.0)))
     at[open_] = _guess(pieces, piece[open_], points[open_])
     for _ in range(_STEPS):
         if not len(open_):
@@ -152,7 +153,7 @@ def _drop_perpendiculars(
             step = now + value / rate
         is_out = ~((step >= low[open_]) & (step <= high[open_]))
         at[open_] = np.where(is_out, 0.5 * (low[open_] + high[open_]), step)
-        is_moving = np.abs(at[open_] - now) > 4.0 * np.spacing(high[open_])
+        is_moving = np.abs(at[open_] - now) > rounding[open_]
         open_ = open_[is_moving]
     return at
 
