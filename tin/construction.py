@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any
 
 from ..base.progress import Progress
-from .building import BuildOptions, Survey, assemble, gather_inputs
+from .building import BuildOptions, Survey, assemble, gather_inputs, separate_walls
 from .surface import TIN
 
 if TYPE_CHECKING:
@@ -29,6 +29,7 @@ def triangulate(
     max_edge: float | None = None,
     trim: TrimPolicy = "perimeter",
     crossing: CrossingPolicy = "split",
+    walls: float | None = None,
     conforming: bool = False,
     duplicates: DuplicatePolicy = "mean",
     snap: float = 0.0,
@@ -82,6 +83,11 @@ def triangulate(
         Where lines cross between their vertices, make a vertex with the elevation of the line of
         higher priority, or of the first; of a line that crosses itself the lower one; or refuse.
         Both elevations are in the report.
+    walls : float, optional
+        Breaklines along one line in the plane, with the same vertices, whose elevations differ are
+        walls and faces of kerbs: the upper one stays, the lower one is moved by this to the side
+        where the ground is lower, CRS units. Default none: of two elevations at a vertex that of
+        the line of higher priority, or of the first, counts.
     conforming : bool
         Split the segments of lines until every edge is Delaunay, constrained or not. Refused if
         that takes more than 50 new vertices for each vertex, and 20,000 in all.
@@ -121,13 +127,18 @@ def triangulate(
         one that survey or CRS give.
     LinesError
         If a line has too few vertices or coordinates that are not finite, if a ring crosses
-        itself, if lines cross and must not, if a hole lies outside, or if no triangle is left.
+        itself, if lines cross and must not, if a hole lies outside, or if no triangle is left; if
+        the lines of a wall cross, or points do not tell its lower side.
 
     Notes
     -----
     Exact for coordinates of magnitude 0 or 6e-61 to 1e75. Time and memory grow linearly with the
     points. A place where lines cross is rounded to coordinates once; from there on both lines run
     through that vertex exactly.
+
+    A TIN has one elevation at each place: the lines of a wall are a distance apart, the lower one
+    at least, and by at most some roundings of coordinates more. Where both have one elevation, as
+    where a wall ends, they meet.
 
     References
     ----------
@@ -162,6 +173,8 @@ def triangulate(
         crs=crs,
         elevation_unit=elevation_unit,
     )
+    if walls is not None:
+        inputs = separate_walls(inputs, walls, _measure)
     tin = TIN._of(
         assemble(inputs, done),
         inputs,
@@ -171,3 +184,8 @@ def triangulate(
     )
     done.end()
     return tin
+
+
+def _measure(points: Any, places: Any) -> Any:
+    """Return elevations of the surface of points at places."""
+    return triangulate(points).interpolate(places, method="linear")

@@ -264,3 +264,21 @@ def test_lines_are_refused_where_there_are_none(points, tmp_path):
     )
     assert "has no lines" in result.stderr
     assert not (tmp_path / "a.json").exists()
+
+
+def test_lines_with_two_elevations_are_walls_where_that_is_asked_for(tmp_path):
+    ground = [[x, y, 10.0 if x < 50 else 5.0] for x in range(0, 101, 20) for y in (0, 50, 100)]
+    rows = [",".join(map(str, [*at(*one[:2]).tolist(), one[2]])) for one in ground]
+    points = tmp_path / "points.csv"
+    points.write_text("\n".join(["easting,northing,elevation", *rows]))
+    top, foot = (line((50, 0, z), (50, 100, z)) for z in (10.0, 5.0))
+    lines = write(tmp_path / "lines.gpkg", top, foot, name=["top", "foot"])
+    out = tmp_path / "out.ply"
+    done = run("build", points, "--crs", UTM, "--breaklines", lines, "--walls", 0.25, "-o", out)
+    assert "1 wall: of breaklines along one line the lower one was moved by 0.25" in done.output
+    assert "'foot' lies to the right of" in done.output
+    found = ts.read(out).interpolate([at(50, 40), at(50.25, 40), at(50.125, 40)])
+    assert found == pytest.approx([10.0, 5.0, 7.5], abs=1e-6)
+    done = run("build", out, points, "--walls", 0.25, "-o", tmp_path / "more.ply", code=1)
+    assert "--walls needs points to build from" in done.output
+    run("build", points, "--breaklines", lines, "--crs", UTM, "--walls", 0, "-o", out, code=2)

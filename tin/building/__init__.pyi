@@ -18,3 +18,4 @@ from .reference import require_crs as require_crs
 from .survey import Survey as Survey
 from .survey_moving import move_survey as move_survey
 from .version import Version as Version
+from .walls import separate_walls as separate_walls

@@ -84,6 +84,14 @@ class BuildAlgorithm(CommandAlgorithm):
             "Also of lines that have Z.",
             advanced=True,
         ),
+        number(
+            "WALLS",
+            "Walls: lines this far apart",
+            "--walls",
+            "Of breaklines along one line with two heights the lower one is put this far aside.",
+            least=0.0,
+            advanced=True,
+        ),
         crs(
             "CRS",
             "CRS of the TIN",

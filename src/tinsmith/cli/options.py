@@ -22,7 +22,7 @@ from .paths import LINES
 from .product_options import list_product_options
 
 _OF_FORMATS = ("options", "fallbacks")
-_METHOD = ("duplicates", "snap", "threads", "crossing", "conforming", "max_edge", "trim")
+_METHOD = ("duplicates", "snap", "threads", "crossing", "walls", "conforming", "max_edge", "trim")
 CODE_FLAGS = ("codes", "code_table", "code_style")
 _FILES = ("breaklines", "soft_breaklines", "boundary", "holes", "erase", "water")
 
@@ -88,6 +88,7 @@ class Triangulating(Coding):
     snap: float = 0.0
     threads: int | None = None
     crossing: str = "split"
+    walls: float | None = None
     conforming: bool = False
     max_edge: float | None = None
     trim: str = "perimeter"
@@ -126,7 +127,7 @@ class Triangulating(Coding):
     @property
     def shaping(self) -> list[str]:
         """Names of the options given that need points to build from."""
-        names = ("max_edge", *CODE_FLAGS, "conforming", *_FILES)
+        names = ("max_edge", *CODE_FLAGS, "walls", "conforming", *_FILES)
         return [f"--{name.replace('_', '-')}" for name in names if getattr(self, name)]
 
 
@@ -312,7 +313,11 @@ _LINES = under(
     click.option(
         "--drape", is_flag=True, help="Take the elevations of lines in files from the surface."
     ),
-    *list_product_options(_TRIANGULATE, "crossing conforming"),
+    *list_product_options(
+        _TRIANGULATE,
+        "crossing walls conforming",
+        walls="How far apart breaklines along one line with two elevations are put.",
+    ),
 )
 
 _TRIMMING = under("Triangulation", *list_product_options(_TRIANGULATE, "max_edge trim"))

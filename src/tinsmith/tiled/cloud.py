@@ -68,6 +68,7 @@ _NOT_OF_TILES = {
     "erase": "points are left out by their attributes only (`where`)",
     "water": "points within it go, and lines around it change, which no tile can tell",
     "max_edge": "what it drops from the rim inwards no tile can tell",
+    "walls": "the points of all tiles tell which side of a wall is the lower one",
     "snap": "points move one after the other, all over the surface",
     "conforming": "vertices come one after the other, all over the surface",
 }

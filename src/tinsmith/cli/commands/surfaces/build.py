@@ -191,8 +191,8 @@ def _read(points: Sequence[Path], job: Job, *, is_contours: bool) -> tuple[TIN |
 def _insert(base: TIN, survey: Survey, path: Path, job: Job) -> TIN:
     """Insert points with their lines into a TIN."""
     how = job.building
-    asked = {"max_edge": how.max_edge, "conforming": how.conforming, "snap": how.snap}
-    for name in (name for name, value in asked.items() if value):
+    names = ("max_edge", "walls", "conforming", "snap")
+    for name in (name for name in names if getattr(how, name)):
         flag = f"--{name.replace('_', '-')}"
         raise Failure(f"'{path}' holds a TIN already, and {flag} needs points to build from.")
     tin = base.copy()
