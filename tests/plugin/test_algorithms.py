@@ -54,7 +54,7 @@ def test_tins_are_those_of_the_package(tmp_path, survey):
     tin, layers = make_inputs(tmp_path, survey)
     jobs = {
         "lines": job("build", POINTS="points", BREAKLINES="kerb", BOUNDARY="site", MAX_EDGE=50,
-                     REPORT=tmp_path / "r.json", OUTPUT=tmp_path / "lines.ply"),
+                     WALLS=0.01, REPORT=tmp_path / "r.json", OUTPUT=tmp_path / "lines.ply"),
         "field": job("build", POINTS={"selected": "flat"}, POINTS_Z_FIELD="high",
                      DUPLICATES="first", OUTPUT=tmp_path / "field.nc"),
         "dem": job("build", DEM="dem", STRIDE=16, OUTPUT=tmp_path / "dem.2dm"),

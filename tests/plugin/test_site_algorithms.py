@@ -14,7 +14,9 @@ EYE = [752740.0, 4024250.0]
 PLACES = [[752740.0, 4024250.0], [752780.0, 4024290.0]]
 PAD = [[752740.0, 4024290.0], [752780.0, 4024290.0], [752780.0, 4024315.0], [752740.0, 4024315.0]]
 AXIS = [[752740.0, 4024290.0, 327.0], [752780.0, 4024300.0, 328.0]]
-TEMPLATE = "side,name,width,slope,use,ratio\nboth,lane,3,-0.02,,\nboth,,,,cut,2\nboth,,,,fill,2\n"
+TEMPLATE = (
+    "side,name,width,slope,use,ratio\nboth,lane,3,-0.02,turns,\nboth,,,,cut,2\nboth,,,,fill,2\n"
+)
 PATCH = [[752700.0, 4024240.0, 330.0], [752720.0, 4024240.0, 330.0], [752710.0, 4024260.0, 331.0]]
 
 
@@ -24,6 +26,7 @@ def make_site(folder):
     ts.write(ts.triangulate(PATCH, crs=qgis.UTM), folder / "patch.ply")
     ts.write(make_cloud(), folder / "cloud.gpkg")
     (folder / "template.csv").write_text(TEMPLATE)
+    (folder / "turns.json").write_text('[{"station": 0, "left": 0.03, "right": -0.03}]')
     places = ts.Survey(points=np.pad(PLACES, [(0, 0), (0, 1)]), crs=qgis.UTM)
     around = ts.reproject(places, "EPSG:4326")
     degrees = [[qgis.write_wkt("Point", [row[:2]]), []] for row in around.points]
@@ -69,7 +72,9 @@ def test_results_are_those_of_the_package(tmp_path):
         "graded": qgis.job("grade", INPUT="ground", PAD="pad",
                            OUTPUT=tmp_path / "graded.ply", **slopes),
         "road": qgis.job("corridor", INPUT="ground", LINE="road",
-                         TEMPLATE=str(tmp_path / "template.csv"), OUTPUT=tmp_path / "road.ply"),
+                         TEMPLATE=str(tmp_path / "template.csv"),
+                         SUPERELEVATION=str(tmp_path / "turns.json"),
+                         OUTPUT=tmp_path / "road.ply"),
         "pasted": qgis.job("paste", BASE="ground", PATCH="patch", OUTPUT=tmp_path / "pasted.nc"),
         "merged": qgis.job("merge", FIRST="patch", SECOND="ground", BLEND=2.5,
                            OUTPUT=tmp_path / "merged.ply"),
@@ -153,7 +158,12 @@ def check_earthwork(told, tin, folder):
     outputs = told["graded"]["outputs"]
     assert outputs["CUT"] == pytest.approx(table["cut"][0], rel=1e-12)
     assert outputs["FILL"] == pytest.approx(table["fill"][0], rel=1e-12)
-    made = ts.corridor(tin, AXIS, ts.read_template(folder / "template.csv"))
+    made = ts.corridor(
+        tin,
+        AXIS,
+        ts.read_template(folder / "template.csv"),
+        superelevation=ts.read_superelevation(folder / "turns.json"),
+    )
     qgis.assert_same_tin(ts.read(folder / "road.ply"), made)
     assert told["road"]["outputs"]["CUT"] == pytest.approx(ts.volume(tin, made)["cut"][0])
     pasted = ts.paste(tin, ts.triangulate(PATCH, crs=qgis.UTM))

@@ -51,6 +51,10 @@ class Design:
         self._up, self._road = road.up, road
         self._turn = _read_superelevation(superelevation)
         self._require_ditches()
+        parts = [part for side in SIDES for one in self._list_sides(side) for part in one.parts]
+        if len(self._turn) and not any(part.turns for part in parts):
+            allowed = "left out where no part of the template turns"
+            raise OptionError("superelevation", superelevation, allowed)
         if road.lap is not None:
             self._require_closed(np.array(road.lap))
 

@@ -126,6 +126,24 @@ def test_an_inclined_pad_agrees_with_a_fine_raster(seed):
     assert np.abs(graded.interpolate(xy + UTM) - expected).max() < 0.01
 
 
+@pytest.mark.parametrize("shrink", [1.0, 0.85])
+def test_a_site_with_fixed_pads_is_in_balance_by_what_they_leave(shrink):
+    ground = hills(4)
+    ratios = {"cut_slope": 1.5, "fill_slope": 2}
+    fixed = ground
+    for corner, level in (([20, 20], 103.0), ([150, 30], 98.5)):
+        ring = np.add(SQUARE - 25.0 + corner, UTM)
+        fixed = ts.grade(fixed, ring, level, **ratios)
+    moved = ts.volume(ground, fixed)
+    surplus = shrink * one(moved, "cut") - one(moved, "fill")
+    assert abs(surplus) > 1.0
+    pad = np.add((SQUARE - 25.0) * 4.0 + [80, 110], UTM)
+    found = ts.balance(fixed, pad, shrink_factor=shrink, surplus=surplus, **ratios)
+    whole = ts.volume(ground, found.tin)
+    rest = shrink * one(whole, "cut") - one(whole, "fill")
+    assert abs(rest) < 1e-6 * (one(whole, "cut") + one(whole, "fill"))
+
+
 def test_an_inclined_pad_of_the_gradient_of_the_ground_changes_nothing():
     ground = plane(0.05, 0.02)
     found = ts.balance(ground, SQUARE, cut_slope=2, fill_slope=2, gradient=(0.05, 0.02))

@@ -318,6 +318,11 @@ def test_templates_of_other_parts_are_refused():
         ts.corridor(make_ground(), STRAIGHT, {0: ROAD, 50: other})
 
 
+def test_superelevation_of_a_template_that_does_not_turn_is_refused():
+    with pytest.raises(ts.OptionError, match="left out where no part of the template turns"):
+        ts.corridor(make_ground(), STRAIGHT, DAM, superelevation=[[0, 0.05, -0.05]])
+
+
 def test_a_ditch_steeper_than_the_fill_is_refused():
     steep = ts.Side([LANE], ditch=[ts.Part("foreslope", 1, -0.6)], cut_slope=1, fill_slope=2)
     with pytest.raises(ts.OptionError, match="at most as steep as the side slope of a fill"):
