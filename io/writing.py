@@ -86,7 +86,7 @@ def write(
         ``overwrite``, ``compact``, ``projected``, ``multipatch``; of LandXML and DXF ``name``,
         ``unit``, ``version``, ``labels``, ``label_height``; of meshes ``ortho``, ``exaggeration``,
         ``scale``, ``solid``, ``thickness``, ``size``, ``precision``, ``max_level``, ``gzipped``,
-        ``positive``.
+        ``positive``, ``frame``.
 
     Returns
     -------

@@ -9,6 +9,7 @@ from .signatures import (
     is_adcirc,
     is_cityjson,
     is_esri_tin,
+    is_glb,
     is_gzipped_tile,
     is_off,
     is_quantized_mesh,
@@ -171,15 +172,15 @@ FORMATS = (
         sniff=is_quantized_mesh,
         sniff_file=is_gzipped_tile,
     ),
-    Format(
-        name="glb",
-        description="GLB, binary glTF 2.0 (for viewers, browsers, game engines)",
-        suffixes=(".glb",),
+    _make(
+        *("glb", "GLB, binary glTF 2.0 (for viewers, browsers, game engines)", ".glb"),
+        module="gltf.reading",
         write="tinsmith.io.mesh.gltf.writing:write",
-        writes=("TIN",),
         precision="1/16,000,000 of the extent, relative to an origin stored in the file.",
+        relative_rounding=6e-8,
         losses=f"{_LOSSES}; vertices of no triangle.",
         loses=_LOSES,
+        sniff=is_glb,
     ),
     _make(
         "off",

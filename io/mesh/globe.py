@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import math
 import warnings
 from typing import TYPE_CHECKING
+
+import numpy as np
 
 from ...base.crs import CRS
 from ..reprojection import reproject
@@ -26,6 +29,27 @@ def place_on_globe(points: Float64Array, crs: CRS, unit: Unit | None) -> Float64
     else:
         source, unit = crs.horizontal, unit or crs.usual_elevation_unit
     return reproject(points, source, CRS(_ELLIPSOIDAL), unit=unit).points
+
+
+def find_frame(place: Float64Array, cartesian: Float64Array) -> Float64Array:
+    """Return the (4, 4) matrix from metres to the east, to the north and up to EPSG:4978.
+
+    Parameters
+    ----------
+    place : (3,) float64 array
+        Longitude, latitude and height of its origin.
+    cartesian : (3,) float64 array
+        The origin itself.
+    """
+    longitude, latitude = np.radians(place[:2]).tolist()
+    sin_x, cos_x = math.sin(longitude), math.cos(longitude)
+    sin_y, cos_y = math.sin(latitude), math.cos(latitude)
+    made = np.eye(4)
+    made[:3, 0] = -sin_x, cos_x, 0.0
+    made[:3, 1] = -sin_y * cos_x, -sin_y * sin_x, cos_y
+    made[:3, 2] = cos_y * cos_x, cos_y * sin_x, sin_y
+    made[:3, 3] = cartesian
+    return made
 
 
 def describe_heights(crs: CRS) -> str:

@@ -34,6 +34,11 @@ _ELEMENT = re.compile(rb"\s*\d+\s+(?:3(?:\s+\d+){3}|4(?:\s+\d+){4})\s*")
 _CITYJSON = re.compile(rb'"type"\s*:\s*"CityJSON"')
 
 
+def is_glb(head: bytes) -> bool:
+    """Whether the file is binary glTF."""
+    return head.startswith(b"glTF")
+
+
 def is_2dm(head: bytes) -> bool:
     """Whether the file is a 2DM mesh."""
     return _2DM.match(head.removeprefix(b"\xef\xbb\xbf")) is not None

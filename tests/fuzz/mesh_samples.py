@@ -62,6 +62,14 @@ def _make_off(folder: Path) -> list[tuple[str, bytes]]:
     return [*_write(folder, "a.off"), ("colours.off", colors)]
 
 
+def _make_glb(folder: Path) -> list[tuple[str, bytes]]:
+    found = []
+    for frame in ("map", "local", "globe"):
+        path = ts.write(_tin(), folder / f"{frame}.glb", frame=frame)
+        found.append((path.name, path.read_bytes()))
+    return found
+
+
 def _make_cityjson(folder: Path) -> list[tuple[str, bytes]]:
     ((name, content),) = _write(folder, "a.city.json")
     city = json.loads(content)
@@ -120,6 +128,7 @@ MESH_MAKERS = {
     "adcirc": _make_adcirc,
     "selafin": _make_selafin,
     "off": _make_off,
+    "glb": _make_glb,
     "cityjson": _make_cityjson,
     "ugrid": _make_ugrid,
     "esritin": _make_esri_tin,

@@ -62,7 +62,8 @@ TEXT = ("delimited",)
 INSTRUMENTS = ("gsi", "sdr", "jobxml", "dc")
 CELLS = ("raster",)
 HYDRAULIC = ("2dm", "adcirc", "selafin", "ugrid")
-MESHES = ("tin", "ply", "obj", "stl", "vtk", "gmsh", *HYDRAULIC, "esri-tin", "cityjson", "off")
+MESHES = ("tin", "ply", "obj", "stl", "vtk", "gmsh", *HYDRAULIC, "esri-tin", "cityjson", "off",
+          "glb")  # fmt: skip
 IN_DEGREES = ("geojson", "geojsonseq")
 LAYERS = ("gpkg", "flatgeobuf", "shapefile", "geoparquet", "vector")
 DRAWINGS = ("landxml", "12da", "dxf")
@@ -164,7 +165,7 @@ SAID = {
     },
     "polygons of four corners": {
         **each((*TEXT, *INSTRUMENTS, *CELLS, "las"), NO_POLYGONS),
-        **each(("tin", "stl", "esri-tin", "terrain", "12da"), TRIANGLES),
+        **each(("tin", "stl", "esri-tin", "terrain", "12da", "glb"), TRIANGLES),
         **each(
             ("ply", "obj", "off", "vtk", "gmsh", "ugrid", "cityjson"), Noted("1 polygon of the")
         ),

@@ -105,6 +105,8 @@ def test_geotiffs_are_cloud_optimized_where_they_say_so(tmp_path, made):
 def test_glb_passes_the_validator_of_khronos(tmp_path, made, validate):
     paths = write_each(made, ts.TIN, ".glb", tmp_path)
     paths["exaggerated"] = ts.write(HILL, tmp_path / "high.glb", exaggeration=7.5)
+    for frame in ("local", "globe"):
+        paths[frame] = ts.write(HILL, tmp_path / f"{frame}.glb", frame=frame)
     assert validate(paths) == {}
 
 

@@ -1,9 +1,9 @@
 """GLB, the binary form of glTF 2.0: a surface for viewers, browsers and game engines.
 
 glTF is in metres with Y up: easting becomes X, elevation Y, and northing -Z. Positions are float32
-relative to an origin, the corner of the TIN's bounds rounded down, which is the translation of the
-node and stands in its ``extras`` with the CRS and the units. Vertices have normals, and colours by
-elevation or a texture.
+relative to an origin, the middle of the TIN's bounds in whole numbers, to which the node moves them
+in doubles, and which stands in its ``extras`` with the CRS, the vertical datum and the units.
+Vertices have normals, and colours by elevation or a texture.
 """
 
 from __future__ import annotations
@@ -18,11 +18,14 @@ import numpy as np
 from ....base.atomic import replacing
 from ....base.checks import as_number
 from ....base.crs import assume_elevation_unit
-from ....base.errors import CrsError, WriteError
+from ....base.errors import CrsError, WriteError, choice
 from ....base.notes import warn
+from ....base.policies import SceneFrame
 from ....base.sentences import FILE, counted
 from ....terrain.drawing import interpolate_tints
 from ..common import format_crs, format_unit, require_tin
+from ..globe import describe_heights, find_frame, has_heights, place_on_globe
+from ..quantized_mesh import to_cartesian
 from ..texture import load_texture
 
 if TYPE_CHECKING:
@@ -69,9 +72,10 @@ def write(
     *,
     ortho: str | os.PathLike[str] | None = None,
     exaggeration: float = 1.0,
+    frame: SceneFrame = "map",
     progress: Tell | None = None,
 ) -> None:
-    """Write a TIN as GLB.
+    """Write a TIN as GLB; :func:`.reading.read` gives it back.
 
     Parameters
     ----------
@@ -80,13 +84,17 @@ def write(
         it. Default colours by elevation.
     exaggeration : float
         Factor on the elevations, which ``extras`` tells.
+    frame : {"map", "local", "globe"}
+        Where the node puts the surface: at its coordinates of the map; about 0, for programs that
+        place in 32 bits, as Blender does; or on the globe (EPSG:4978), for Cesium.
 
     Raises
     ------
     CrsError
-        If coordinates are longitude and latitude.
+        If coordinates are longitude and latitude, unless the frame is the globe, which needs to
+        know the CRS.
     OptionError
-        If the exaggeration is not positive.
+        If the exaggeration is not positive, or there is no such frame.
     ReadError
         If the picture cannot be read, or shows nothing of the surface.
     WriteError
@@ -100,18 +108,27 @@ def write(
     """
     tin = require_tin(surface, format_name="GLB")
     as_number("exaggeration", exaggeration, above=0)
-    if tin.crs is not None and tin.crs.is_geographic:
+    choice("frame", frame, SceneFrame)
+    if frame != "globe" and tin.crs is not None and tin.crs.is_geographic:
         raise CrsError(
             f"Cannot write {FILE}: GLB is in metres, and {tin.crs.label} in degrees; build the "
-            "TIN in a projected CRS.",
+            "TIN in a projected CRS, or take `frame='globe'`.",
             crs=tin.crs,
         )
     draped = None if ortho is None else load_texture(ortho, tin)
-    origin = np.floor(tin.points.min(axis=0))
-    scale = _choose_scale(tin) * (1.0, 1.0, exaggeration)
-    mesh = _make_mesh(tin, origin, scale, draped)
-    node = {"translation": turn_up((origin * scale)[None])[0].tolist(), "extras": _describe(
-        tin, origin, scale, exaggeration)}  # fmt: skip
+    scale = _choose_scale(tin)
+    middle = (tin.points.min(axis=0) + tin.points.max(axis=0)) / 2
+    origin = middle if frame == "globe" else np.rint(middle)
+    extras = _describe(tin, origin, scale) | {"exaggeration": float(exaggeration), "frame": frame}
+    scale = scale * (1.0, 1.0, exaggeration)
+    node: dict[str, Any] = {"extras": extras}
+    if frame == "globe":
+        every, node["matrix"] = _place_on_globe(tin, origin, exaggeration)
+    else:
+        every = (tin.points - origin) * scale
+    if frame == "map":
+        node["translation"] = turn_up((origin * scale)[None])[0].tolist()
+    mesh = _make_mesh(tin, every, draped)
     content = encode_glb(mesh, node)
     with replacing(path) as file:
         for chunk in content:
@@ -153,10 +170,28 @@ def turn_up(vectors: Float64Array) -> Float64Array:
     return np.column_stack([vectors[:, 0], vectors[:, 2], -vectors[:, 1]]) + 0.0
 
 
-def _make_mesh(
-    tin: TIN, origin: Float64Array, scale: Float64Array, texture: Texture | None
-) -> MeshArrays:
-    every = (tin.points - origin) * scale
+def _place_on_globe(
+    tin: TIN, origin: Float64Array, exaggeration: float
+) -> tuple[Float64Array, list[float]]:
+    """Return points in metres to the east, to the north and up, and the matrix of their node."""
+    if tin.crs is None:
+        raise CrsError(
+            f"Cannot write {FILE}: the CRS of this TIN is not known, and the frame is the globe: "
+            "declare it."
+        )
+    if not has_heights(tin.crs):
+        warn(f"{FILE}: {describe_heights(tin.crs)}")
+    raised = np.vstack([origin, tin.points]) * (1.0, 1.0, exaggeration)
+    places = place_on_globe(raised, tin.crs, tin.elevation_unit)
+    cartesian = to_cartesian(places)
+    frame = find_frame(places[0], cartesian[0])
+    turned = np.eye(4)
+    turned[:3, :3] = turn_up(turn_up(frame[:3, :3].T).T)
+    turned[:3, 3] = turn_up(cartesian[:1])[0]
+    return (cartesian[1:] - cartesian[0]) @ frame[:3, :3], turned.T.ravel().tolist()
+
+
+def _make_mesh(tin: TIN, every: Float64Array, texture: Texture | None) -> MeshArrays:
     positions = turn_up(every).astype(np.float32)
     triangles = tin.triangles
     if not np.isfinite(positions[triangles]).all():
@@ -187,7 +222,7 @@ def _make_mesh(
         np.float32
     )
     is_short = len(used) <= _MOST_SHORT_VERTICES
-    heights = places[:, 2]
+    heights = tin.points[used, 2]
     colors = choose_colors(heights, heights.min(), heights.max()) if texture is None else None
     if texture is not None:
         texture = type(texture)(texture.content, texture.kind, texture.places[used])
@@ -206,18 +241,18 @@ def choose_colors(elevations: Float64Array, low: float, high: float) -> UInt16Ar
     return colors
 
 
-def _describe(
-    tin: TIN, origin: Float64Array, scale: Float64Array, exaggeration: float
-) -> dict[str, Any]:
+def _describe(tin: TIN, origin: Float64Array, metres: Float64Array) -> dict[str, Any]:
     """Return what leads from the file back to the coordinates."""
     extras: dict[str, Any] = {
         "origin": origin.tolist(),
-        "metres": (scale / (1.0, 1.0, exaggeration)).tolist(),
-        "exaggeration": float(exaggeration),
+        "metres": metres.tolist(),
         "axes": "x = easting, y = elevation, z = -northing, in metres from the origin",
     }
     if tin.crs is not None:
         extras["crs"] = format_crs(tin.crs)
+        parts = tin.crs.to_pyproj().sub_crs_list  # none but of compound ones
+        if parts:
+            extras["verticalDatum"] = parts[-1].name
     if unit := format_unit(tin):
         extras["elevationUnit"] = unit
     return extras

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from ....base.crs import CRS, Unit
-from ..globe import describe_heights, has_heights, place_on_globe
+from ..globe import describe_heights, find_frame, has_heights, place_on_globe
 from ..gltf import MeshArrays, choose_colors, encode_glb, turn_up
 from ..quantized_mesh import to_cartesian
 
@@ -84,15 +84,7 @@ class Scene:
         box = self.bounds
         middle = [(box.xmin + box.xmax) / 2, (box.ymin + box.ymax) / 2, sum(self.elevations) / 2]
         place = place_on_globe(np.array([middle]), self.crs, self.elevation_unit)
-        longitude, latitude = np.radians(place[0, :2]).tolist()
-        sin_x, cos_x = math.sin(longitude), math.cos(longitude)
-        sin_y, cos_y = math.sin(latitude), math.cos(latitude)
-        made = np.eye(4)
-        made[:3, 0] = -sin_x, cos_x, 0.0
-        made[:3, 1] = -sin_y * cos_x, -sin_y * sin_x, cos_y
-        made[:3, 2] = cos_y * cos_x, cos_y * sin_x, sin_y
-        made[:3, 3] = to_cartesian(place)[0]
-        return made
+        return find_frame(place[0], to_cartesian(place)[0])
 
     @property
     def notes(self) -> list[str]:

@@ -180,3 +180,6 @@ TileEncoding: TypeAlias = Literal["terrarium", "mapbox"]
 
 TileGaps: TypeAlias = Literal["lowest", "transparent"]
 """What the pixels of a tile without data show."""
+
+SceneFrame: TypeAlias = Literal["map", "local", "globe"]
+"""Where a scene in 3D has its surface."""
