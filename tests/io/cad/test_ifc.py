@@ -84,6 +84,7 @@ def test_lines_are_curves_with_their_names_and_kinds(tmp_path, version):
 
 
 @pytest.mark.slow
+@pytest.mark.each_value
 @pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning")  # its open files
 @pytest.mark.parametrize("version", VERSIONS)
 @pytest.mark.parametrize(
