@@ -7,6 +7,7 @@ import os
 import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
+from functools import cache
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -33,7 +34,6 @@ _BLOCK_CELLS = 4 * 1024 * 1024
 _SMALLEST_OVERVIEW = 256
 _LEVEL = 4
 """Of deflate: a third quicker than the usual 6, for files that are 1 to 10 percent larger."""
-_ALL = "ALL_CPUS"
 _LARGEST_DRAFT = 1 << 30
 _WIDER = {"bool": "uint8", "float16": "float32"}
 """What GDAL keeps beside a raster, and would use with the new one."""
@@ -96,7 +96,7 @@ def write(
             with (
                 rasterio.Env(
                     BIGTIFF_OVERVIEW="IF_SAFER",
-                    GDAL_NUM_THREADS=_ALL,
+                    GDAL_NUM_THREADS=_choose_threads(),
                     **(packing if compression == "deflate" else {}),
                 ),
                 rasterio.open(new, "r+") as dataset,
@@ -144,7 +144,7 @@ def write_cog(
             COMPRESS="DEFLATE",
             LEVEL=_LEVEL,
             PREDICTOR="YES",
-            NUM_THREADS=_ALL,
+            NUM_THREADS=_choose_threads(),
             BIGTIFF="IF_SAFER",
             OVERVIEWS="NONE" if resampling == "none" else "AUTO",
             **({} if resampling == "none" else {"OVERVIEW_RESAMPLING": resampling.upper()}),
@@ -230,10 +230,24 @@ def _make_profile(raster: Raster, compression: RasterCompression) -> dict[str, A
         "nodata": _choose_nodata(raster, dtype),
         "interleave": "band",
         "bigtiff": "IF_SAFER",
-        "num_threads": _ALL,
+        "num_threads": _choose_threads(),
         **(packing if compression == "deflate" else {}),
         **(tiles if max(rows, columns) > _TILE else {}),
     }
+
+
+@cache
+def _first_process() -> int:
+    """Return the process that first wrote a raster, of which a fork is a copy."""
+    return os.getpid()
+
+
+def _choose_threads() -> str:
+    """Return how many threads GDAL may take: one in a fork.
+
+    GDAL keeps the threads of its first file, and a fork, which has none, would wait for them.
+    """
+    return "ALL_CPUS" if os.getpid() == _first_process() else "1"
 
 
 def _choose_predictor(dtype: np.dtype[Any]) -> int:
@@ -272,7 +286,7 @@ def _require_complete(new: Path, factors: Sequence[int] | None = None) -> None:
     if factors is not None and levels != len(factors):
         raise _describe_missing("overviews")
     for options in ({}, *({"overview_level": level} for level in range(levels))):
-        with rasterio.open(new, num_threads=_ALL, **options) as dataset:
+        with rasterio.open(new, num_threads=_choose_threads(), **options) as dataset:
             # Refuse a file without the place of a block, which reads as cells without data.
             for number in dataset.indexes:
                 for (row, column), _ in dataset.block_windows(number):
