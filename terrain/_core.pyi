@@ -268,6 +268,8 @@ def shade_planes(
 ) -> UInt8Array: ...
 def densify(
     seeds: Float64Array,
+    triangles: Int32Array,
+    neighbors: Int32Array,
     points: Float64Array,
     is_candidate: BoolArray,
     sine: float,

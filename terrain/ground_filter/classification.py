@@ -381,8 +381,11 @@ def _densify(
 ) -> tuple[Float64Array, Float64Array]:
     order = cells.order
     heights, slopes = np.empty(len(points)), np.empty(len(points))
+    tin = triangulate(seeds, threads=1)
     heights[order], slopes[order] = _kernel.densify(
-        seeds,
+        tin.points,
+        tin.triangles,
+        tin.neighbors,
         points[order],
         is_taken[order],
         float(np.sin(np.radians(parameters.iteration_angle))),

@@ -29,7 +29,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
-#include <stdexcept>
 #include <utility>
 #include <vector>
 
@@ -39,7 +38,6 @@
 #include "../../../tin/cpp/index/hilbert_order.hpp"
 #include "../../../tin/cpp/mesh/mesh_arrays.hpp"
 #include "../../../tin/cpp/mesh/mesh_editor.hpp"
-#include "../../../tin/cpp/triangulation.hpp"
 
 namespace tinsmith {
 
@@ -52,11 +50,10 @@ struct GroundLimits {
 
 class Densification {
  public:
-  // Rows of x, y, z: the seeds with their triangulation, all at different places, and the points,
-  // which must outlive this.
-  Densification(const PointRows& seeds, const Triangulation& made, const double* points,
+  // Rows of x, y, z: the seeds with their triangles, and the points, which must outlive this.
+  Densification(const PointRows& seeds, const GivenTriangles& triangles, const double* points,
                 std::int32_t count, const GroundLimits& limits)
-      : editor_(make_editor(seeds, made)),
+      : editor_(editor_of(seeds, triangles)),
         points_(points),
         count_(count),
         limits_(limits),
@@ -126,14 +123,6 @@ class Densification {
       return base.z + east * (p.x - base.at.x) + north * (p.y - base.at.y);
     }
   };
-
-  static MeshEditor make_editor(const PointRows& seeds, const Triangulation& made) {
-    const auto count = static_cast<std::int32_t>(made.triangle_count);
-    if (!made.kept_row.empty() || count == 0) {
-      throw std::invalid_argument("seeds must lie at different places, not all in line");
-    }
-    return editor_of(seeds, {made.corners.get(), made.neighbors.get(), nullptr, count});
-  }
 
   static std::vector<Point> copy_places(const double* points, std::int32_t count) {
     std::vector<Point> places(static_cast<std::size_t>(count));
