@@ -52,7 +52,7 @@ def fit_text(
 def _wrap(text: str, width: float, measure: Measure) -> list[str]:
     """Part a text into lines, between words where it can be done."""
     lines = []
-    while measure(text) > width:
+    while text and measure(text) > width:
         count = max(_count_fitting(text, width, measure), 1)
         gap = text.rfind(" ", 1, count + 1)
         stop = count if gap < 0 else gap

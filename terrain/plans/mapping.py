@@ -150,7 +150,8 @@ class Map:
         """Tell which stations are within the frame, and return what is across the axis on paper."""
         places = self._window.to_paper(axis.places)
         west, south, east, north = _list_sides(self._window)
-        is_seen = ((places >= (west, south)) & (places <= (east, north))).all(axis=1)
+        inside = (places >= (west, south)) & (places <= (east, north))
+        is_seen: BoolArray = inside.all(axis=1)
         return is_seen, turn(axis.directions, 90.0 - self._window.angle)
 
     def _draw_stations(self, texts: list[_Text]) -> None:

@@ -15,7 +15,7 @@ from .paper import clean_text
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
-    from ...base.arrays import AnyArray, Float64Array
+    from ...base.arrays import Float64Array
     from ...tin import TIN, Survey
 
 _BESIDE = {
@@ -60,7 +60,8 @@ class Marking(NamedTuple):
         least, most = _SIZES
         height = as_number("label_size", size, least=least, most=most, unit="millimetres")
         require_count("decimals", decimals, least=0, most=9, or_none=True)
-        chosen, notes = spots, ()
+        chosen: Any = spots
+        notes: tuple[str, ...] = ()
         if is_finite_number(spots):
             chosen = as_number("spots", spots, "a spacing", above=0.0)
         elif isinstance(spots, str):
@@ -127,8 +128,8 @@ def _gather_points(
 
 def _find_texts(survey: Survey | None, word: str, attributes: Sequence[str]) -> list[str]:
     for name in attributes:
-        values: AnyArray = () if survey is None else survey.attributes.get(name, ())
-        if len(values):
+        values = None if survey is None else survey.attributes.get(name)
+        if values is not None and len(values):
             return [clean_text(str(value)) for value in values]
     what = "point numbers" if word == "numbers" else "codes of points"
     allowed = f"'marks' or 'elevations' where there is no survey with {what}"

@@ -34,7 +34,6 @@ from .paper import (
 from .scales import Scale, describe_factor, find_ground_unit, measure_scale_factor
 from .stations import as_stationed, cut_band, require_shown
 from .title_block import (
-    Caption,
     arrange_sheets,
     begin_caption,
     describe_crs,
@@ -51,7 +50,7 @@ if TYPE_CHECKING:
     from ...base.crs import Unit, UnitLike
     from ...tin import TIN
     from .contents import Contents
-    from .paper import Layout, PaperLike
+    from .paper import Caption, Layout, PaperLike
     from .stations import Stationed
     from .windows import Window
 

@@ -103,6 +103,11 @@ def require_sections(pages: list[Page], table: Any, made: Any, case: Case) -> No
             slack = 1e-4 + 1e-6 * np.abs(expected - expected[0]).max()
             off = np.abs((path - path[0]) - (expected - expected[0])).max()
             assert off <= slack, f"a line is {off} mm off"
+    require_border(pages, made)
+
+
+def require_border(pages: list[Page], made: Any) -> None:
+    """All that is drawn lies within the border of the paper."""
     for page in pages:
         assert np.allclose((page.width, page.height), made.paper, atol=1e-5), "size of the paper"
         for name, paths in page.paths.items():
@@ -140,4 +145,89 @@ def require_drawing(file: Path, table: Any) -> None:
         assert np.allclose(x - x[0], offsets - offsets[0], rtol=1e-9, atol=slack), "scale of DXF"
 
 
-CAMPAIGNS = (Campaign("section sheets", "drawn cross sections, measured", generate, examine),)
+# ---------------------------------------------------------------- long profiles
+
+
+def generate_profile(rng: np.random.Generator) -> Case:
+    """The same surfaces and axes, and a gradient line with parabolas."""
+    case = generate(rng)
+    heights = np.concatenate([np.array(points)[:, 2] for points in case["surfaces"]])
+    count = int(rng.integers(0, 6))
+    shares = np.sort(rng.uniform(-0.1, 1.1, count))
+    levels = rng.uniform(heights.min(), heights.max(), count)
+    curves = rng.uniform(0.0, 0.45, count).round(3)
+    return case | {"points": np.column_stack([shares, levels, curves]).tolist()}
+
+
+def make_vertical(case: Case, length: float) -> Any:
+    """A gradient line whose curves take less than the half of the tangents beside them."""
+    rows = np.array(case["points"]).reshape(-1, 3)
+    if len(rows) < 2:
+        return None
+    stations = rows[:, 0] * length
+    gaps = np.diff(stations)
+    points = [ts.VerticalPoint(stations[0], rows[0, 1])]
+    for k in range(1, len(rows) - 1):
+        reach = rows[k, 2] * min(gaps[k - 1], gaps[k])
+        curve = {"kind": "parabola", "length_in": reach, "length_out": reach} if reach > 0 else {}
+        points.append(ts.VerticalPoint(stations[k], rows[k, 1], **curve))
+    return ts.VerticalAlignment([*points, ts.VerticalPoint(stations[-1], rows[-1, 1])])
+
+
+def examine_profile(case: Case) -> str:
+    """Ask for the whole profile, at scale, however many sheets it takes."""
+    try:
+        tins = [
+            ts.triangulate(points, crs=case["crs"], elevation_unit=case["unit"])
+            for points in case["surfaces"]
+        ]
+        table = ts.profile(tins, case["axis"])
+        vertical = make_vertical(case, float(table["station"][-1]))
+    except ts.TinsmithError:
+        return "refused: input"
+    paper = case["paper"] if isinstance(case["paper"], str) else tuple(case["paper"])
+    try:
+        made = ts.profile_sheets(
+            tins, case["axis"], vertical=vertical, scale=case["scale"], paper=paper,
+            exaggeration=case["exaggeration"],
+            ground_unit="ft" if case["crs"] is None else None,
+        )  # fmt: skip
+    except ts.OptionError as error:
+        if error.option not in ("scale", "paper"):
+            raise
+        return f"refused: {error.option}"
+    if len(made) > 20:
+        return "many sheets"
+    with tempfile.TemporaryDirectory() as folder:
+        pages = [read_svg(file) for file in made.save(Path(folder, "a.svg"))]
+    require_border(pages, made)
+    require_course(pages, table, made, case)
+    return "one sheet" if len(made) == 1 else "several sheets"
+
+
+def require_course(pages: list[Page], table: Any, made: Any, case: Case) -> None:
+    """Over all sheets lines are as long, and rise and fall as much, as the table has them."""
+    along = METRES[case["crs"]] * 1000 / made.scale
+    up = (1.0 if case["unit"] == "m" else 0.3048) * 1000 / made.scale * case["exaggeration"]
+    frames = [page.paths["frame-of-section"][0] for page in pages]
+    stations = table["station"]
+    drawn = sum(float(np.ptp(frame[:, 0])) for frame in frames)
+    assert np.isclose(drawn, np.ptp(stations) * along, rtol=1e-6, atol=1e-3), "length of the sheets"
+    for number in range(len(case["surfaces"])):
+        heights = table[f"elevation_{number + 1}"]
+        steps = np.isfinite(heights[:-1]) & np.isfinite(heights[1:])
+        wanted = (
+            float(np.diff(stations)[steps].sum()) * along,
+            float(np.abs(np.diff(heights))[steps].sum()) * up,
+        )
+        lines = [path for page in pages for path in page.paths.get(f"surface{number + 1}", [])]
+        moves = [np.abs(np.diff(line, axis=0)).sum(axis=0) for line in lines]
+        found = np.sum(moves, axis=0) if moves else np.zeros(2)
+        slack = 1e-3 * (1 + len(stations))
+        assert np.allclose(found, wanted, rtol=1e-5, atol=slack), f"{found} mm, not {wanted}"
+
+
+CAMPAIGNS = (
+    Campaign("section sheets", "drawn cross sections, measured", generate, examine),
+    Campaign("profile sheets", "drawn long profiles, measured", generate_profile, examine_profile),
+)

@@ -21,7 +21,6 @@ from ..paper import (
 from ..scales import describe_factor, find_ground_unit, measure_scale_factor
 from ..sheets import Units, describe_elevations, draw_legend, draw_scales
 from ..title_block import (
-    Caption,
     arrange_sheets,
     begin_caption,
     describe_crs,
@@ -43,7 +42,7 @@ if TYPE_CHECKING:
     from ....base.crs import UnitLike
     from ....tin import TIN
     from ...earthwork import Difference, ErrorModel
-    from ..paper import Layout, PaperLike
+    from ..paper import Caption, Layout, PaperLike
     from .drawings import Map, Profiles
 
 _UNTITLED = "Report of volumes"

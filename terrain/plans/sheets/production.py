@@ -26,7 +26,6 @@ from ..scales import (
     measure_scale_factor,
 )
 from ..title_block import (
-    Caption,
     arrange_sheets,
     begin_caption,
     describe_crs,
@@ -55,7 +54,7 @@ if TYPE_CHECKING:
 
     from ....base.crs import UnitLike
     from ....tin import TIN
-    from ..paper import Drawable, PaperLike
+    from ..paper import Caption, Drawable, PaperLike
     from .arrangement import Drawing
     from .cells import Measures
 

@@ -200,3 +200,13 @@ def test_the_same_profile_makes_the_same_bytes(ground, kind, tmp_path):
         for name in "ab"
     )
     assert one == other
+
+
+def test_tangents_too_short_for_their_texts_are_told(ground, tmp_path):
+    points = [POINT(1000.0 + k, 301.0 + k % 2 / 10) for k in range(200)]
+    rise = ts.VerticalAlignment(points)
+    made = ts.profile_sheets(ground, LINE, vertical=rise, start=1000.0)
+    page = read_svg(made.save(tmp_path / "a.svg")[0])
+    assert len(page.paths["gradient"]) == 199
+    assert page.named("gradient-label") == []
+    assert made.notes[-1].startswith("Texts were cut")

@@ -82,7 +82,7 @@ def add_sheets(facts: Facts, drawn: SectionSheets | ProfileSheets, told: Contain
 
 
 def _list_options(names: Sequence[str]) -> list[Decorator]:
-    own = {
+    own: dict[str, Decorator] = {
         "scale": click.option(
             "--scale",
             metavar="SCALE",
