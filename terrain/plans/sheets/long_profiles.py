@@ -87,6 +87,17 @@ class _Course(NamedTuple):
         return Section(text, at, elevations, None, ends)
 
 
+class _Request(NamedTuple):
+    """What is to be divided into sheets."""
+
+    course: _Course
+    layout: Layout
+    unit: Unit
+    """Of stations."""
+    ratio: float
+    """Of the length on paper of a unit of elevations to that of a unit of stations."""
+
+
 class _Drawing(NamedTuple):
     course: _Course
     parts: tuple[tuple[Section, Measures], ...]
@@ -243,8 +254,11 @@ def profile_sheets(
     asked = None if scale is None else Scale.of(scale, unit)
     table = profile(tin, line, start=start)
     gradient = _find_vertical(vertical, line, surfaces)
-    course = _follow(table, surfaces, line, gradient, units.factor)
-    drawing = _arrange(course, layouts[0], asked, unit, units.factor * factor)
+    course = _follow(table, surfaces, line, gradient)
+    if gradient is not None:
+        gradients = list_gradients(gradient, course.write, units.factor)
+        course = course._replace(gradients=gradients)
+    drawing = _arrange(_Request(course, layouts[0], unit, units.factor * factor), asked)
     own = measure_scale_factor(surfaces.crs, *(float(table[name].mean()) for name in ("x", "y")))
     first, last = (course.write(float(one)) for one in course.stations[[0, -1]])
     facts = (
@@ -284,7 +298,7 @@ def _find_vertical(given: Any, line: Any, surfaces: Surfaces) -> VerticalAlignme
 
 
 def _follow(
-    table: Table, surfaces: Surfaces, line: Any, vertical: VerticalAlignment | None, ratio: float
+    table: Table, surfaces: Surfaces, line: Any, vertical: VerticalAlignment | None
 ) -> _Course:
     """Return the profile, with rows wherever the gradient line is not straight."""
     if table["line"].max() > 0:
@@ -307,33 +321,28 @@ def _follow(
         stations=stations,
         elevations=np.array([*rows, vertical.elevations_at(stations)]),
         names=(*course.names, name),
-        gradients=list_gradients(vertical, course.write, ratio),
     )
 
 
-def _arrange(
-    course: _Course, layout: Layout, scale: Scale | None, unit: Unit, ratio: float
-) -> _Drawing:
+def _arrange(request: _Request, scale: Scale | None) -> _Drawing:
     """Choose the scale, and cut the profile into what each sheet shows."""
     if scale is not None:
-        return _divide(course, layout, scale, unit, ratio)
-    for usual in Scale.usual(unit):
+        return _divide(request, scale)
+    for usual in Scale.usual(request.unit):
         try:
-            found = _divide(course, layout, usual, unit, ratio, most=1)
-        except OptionError:
+            return _divide(request, usual, most=1)
+        except OptionError:  # too large, or elevations are not known so finely
             continue
-        return found
-    raise OptionError("paper", layout.paper.name, "larger: the profile has no room at any scale")
+    allowed = "larger: the profile has no room on it at any scale"
+    raise OptionError("paper", request.layout.paper.name, allowed)
 
 
-def _divide(
-    course: _Course,
-    layout: Layout,
-    scale: Scale,
-    unit: Unit,
-    ratio: float,
-    most: int = _MOST_SHEETS,
-) -> _Drawing:
+def _divide(request: _Request, scale: Scale, *, most: int = _MOST_SHEETS) -> _Drawing:
+    """Cut the profile into what each sheet shows at a scale.
+
+    Raises OptionError if there are too many, or one has no room.
+    """
+    course, layout, unit, ratio = request
     first, last = (float(one) for one in course.stations[[0, -1]])
     along = scale.measure_unit(unit)
     whole = course.cut(first, last)
