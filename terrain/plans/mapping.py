@@ -150,8 +150,8 @@ class Map:
         """Tell which stations are within the frame, and return what is across the axis on paper."""
         places = self._window.to_paper(axis.places)
         west, south, east, north = _list_sides(self._window)
-        inside = (places >= (west, south)) & (places <= (east, north))
-        is_seen: BoolArray = inside.all(axis=1)
+        x, y = places[:, 0], places[:, 1]
+        is_seen = (x >= west) & (x <= east) & (y >= south) & (y <= north)
         return is_seen, turn(axis.directions, 90.0 - self._window.angle)
 
     def _draw_stations(self, texts: list[_Text]) -> None:

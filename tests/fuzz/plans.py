@@ -44,6 +44,10 @@ def generate(rng: np.random.Generator) -> Case:
         "points_drawn": str(rng.choice(["none", "marks", "elevations"])),
         "grid": str(rng.choice(["crosses", "lines"])),
         "spots": choose_spots(rng, size),
+        "axis": rng.integers(0, len(xy), int(rng.integers(2, 6))).tolist(),
+        "has_axis": bool(rng.random() < 0.5),
+        "station_interval": size * float(10 ** rng.uniform(-1.5, 0)),
+        "station_range": np.sort(rng.uniform(0, 1, 2)).tolist() if rng.random() < 0.5 else None,
         "label_size": float(rng.choice([0.8, 1.1, 3.5])),
         "rows": int(rng.integers(-1, 9)),
         "revisions": int(rng.integers(0, 11)),
@@ -52,6 +56,44 @@ def generate(rng: np.random.Generator) -> Case:
 
 def choose_spots(rng: np.random.Generator, size: float) -> Any:
     return (None, "peaks", round(size * float(rng.uniform(0.05, 0.5)), 3))[int(rng.integers(3))]
+
+
+def make_axis(case: Case) -> Any:
+    """A line along some of the points, with stations, and a range of them for strips."""
+    vertices = np.array(case["points"])[case["axis"], :2]
+    kept = np.append(True, (vertices[1:] != vertices[:-1]).any(axis=1))
+    if not case["has_axis"] or kept.sum() < 2:
+        return {}
+    line = vertices[kept]
+    how = {"axis": line, "station_interval": case["station_interval"]}
+    if case["station_range"] is not None and case["layout"] == "strips":
+        begin, end = case["station_range"]
+        length = shapely.LineString(line).length
+        if end - begin > 1e-6:
+            how["station_range"] = (begin * length, end * length)
+    return how
+
+
+def require_stations(page: Page, along: Any) -> None:
+    """Every station that is written has a tick where the axis has it."""
+    ground, labels = georeference(page), page.named("station-label")
+    if ground is None or not labels:
+        return
+    ticks = [one.mean(axis=0) for one in page.paths["station-ticks"] if len(one) == 2]
+    places = ground.to_ground(np.array(ticks))
+    line = shapely.LineString(along["axis"])
+    for label in labels:
+        wanted = np.array(line.interpolate(float(label.text)).coords[0])
+        nearest = float(np.hypot(*(places - wanted).T).min())
+        near = 0.2 * max(ground.units_per_mm) + 1e-3
+        is_cut = np.abs(label.place - np.clip(label.place, *_inset(page))).max() > 0
+        assert nearest <= near or is_cut, f"station {label.text} is {nearest} from a tick"
+
+
+def _inset(page: Page) -> Any:
+    """Return the corners of the frame, so much inside that no tick there is cut."""
+    left, low, right, top = page.frame
+    return np.array([left + 14.0, low + 14.0]), np.array([right - 14.0, top - 14.0])
 
 
 def make_block(case: Case) -> Any:
@@ -88,23 +130,37 @@ def choose_scale(rng: np.random.Generator, size: float) -> Any:
     return max(1, round(denominator))
 
 
-def examine(case: Case) -> str:
-    """Ask for sheets that measure right, cover the surface and are labelled truly."""
-    tin = build(case)
-    if tin is None:
-        return "refused: points"
+def draw(tin: Any, case: Case, along: Any) -> Any:
+    """Return the plan, or how it was refused."""
     paper = case["paper"] if isinstance(case["paper"], str) else tuple(case["paper"])
     try:
-        made = ts.plan(
+        return ts.plan(
             tin, scale=case["scale"], paper=paper, layout=case["layout"],
             labels=case["labels"], points=case["points_drawn"], grid=case["grid"],
             spots=case["spots"], label_size=case["label_size"], title_block=make_block(case),
+            **along,
         )  # fmt: skip
     except ts.OptionError as error:
         if error.option not in ("scale", "paper"):
             raise
         return f"refused: {error.option}"
-    require_cover(tin, made)
+    except ts.LinesError:
+        if not along:
+            raise
+        return "refused: axis"
+
+
+def examine(case: Case) -> str:
+    """Ask for sheets that measure right, cover the surface and are labelled truly."""
+    tin = build(case)
+    if tin is None:
+        return "refused: points"
+    along = make_axis(case)
+    made = draw(tin, case, along)
+    if isinstance(made, str):
+        return made
+    if "station_range" not in along:
+        require_cover(tin, made)
     if len(made) > 12:
         return "many sheets"
     with tempfile.TemporaryDirectory() as folder:
@@ -116,6 +172,7 @@ def examine(case: Case) -> str:
             if not is_index:
                 require_labels(page, tin, made)
                 require_marks(page, tin)
+                require_stations(page, along)
     return "one sheet" if len(made) == 1 else case["layout"]
 
 
