@@ -160,7 +160,8 @@ def _turn(path: Float64Array) -> Float64Array:
 
 def _leave_repeated(path: Float64Array) -> Float64Array:
     """Return a line without vertices at the place of the one before."""
-    return path[np.append(True, (np.diff(path[:, :2], axis=0) != 0.0).any(axis=1))]
+    is_new = np.append(True, (np.diff(path[:, :2], axis=0) != 0.0).any(axis=1))
+    return np.asarray(path[is_new])
 
 
 def _say_where(lines: LineSet, group: list[tuple[int, Float64Array]]) -> str:
