@@ -121,7 +121,8 @@ def triangulate(
         the exact range, if fewer than three places are distinct, if all are collinear, or
         (``duplicates="error"``) if two rows coincide.
     CrsError
-        If the CRS is unknown, or another than that of the survey, the points or the lines.
+        If the CRS is unknown, or another than that of the survey, the points or the lines; if walls
+        are asked for and coordinates are angles.
     OptionError
         If an option is none of the allowed; if ``elevation_unit`` is unknown, or another than the
         one that survey or CRS give.

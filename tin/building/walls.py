@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from ...base.checks import as_length
+from ...base.crs import require_lengths
 from ...base.errors import LinesError, OptionError, PointsError
 from ...base.sentences import coordinate, counted
 from .. import _kernel
@@ -64,11 +65,14 @@ def separate_walls(inputs: BuildInputs, walls: Any, measure: Measure) -> BuildIn
     ------
     OptionError
         If the distance is no length, within rounding, or not above that of ``snap``.
+    CrsError
+        If coordinates are angles.
     LinesError
         If three elevations are along one line, two cross each other, the ground does not tell on
         which side it is lower, or a wall turns too sharply for the distance.
     """
     distance = as_length("walls", walls)
+    require_lengths(inputs.crs)
     lines = inputs.lines
     size = max(float(np.abs(one).max(initial=0.0)) for one in (lines.xy, inputs.points[:, :2]))
     rounding = float(np.spacing(size))

@@ -103,7 +103,7 @@ def meet_ground(tin: TIN, skirt: TIN, pad: Any, sign: float) -> tuple[Slope, Flo
     start, end = _find_outline(found, is_made, only_outer=True)
     middles = (found.points[start, :2] + found.points[end, :2]) / 2
     ends = middles[~lie_on(pad, middles, tolerance)]
-    return Slope(found, is_made, _measure_elevations(found, skirt)), ends
+    return Slope(found, is_made, _measure_elevations(found, skirt, tin)), ends
 
 
 def require_ground(lost: Float64Array, rate: float) -> None:
@@ -156,10 +156,18 @@ def _find_made(found: TIN, pad: Any, sign: float, tolerance: float) -> BoolArray
     return np.isin(part, part[at_pad])
 
 
-def _measure_elevations(found: TIN, skirt: TIN) -> Float64Array:
-    """Return the elevations of a slope at the vertices of its difference to the ground."""
+def _measure_elevations(found: TIN, skirt: TIN, ground: TIN) -> Float64Array:
+    """Return the elevations of a slope at the vertices of its difference to the ground.
+
+    Where that is 0 they are those of the ground: faces of the slope that are thinner than
+    coordinates are rounded have elevations of their own there.
+    """
     xy = found.points[:, :2]
     elevations: Float64Array = skirt.interpolate(xy)
+    at_daylight = np.flatnonzero(found.points[:, 2] == 0.0)
+    if len(at_daylight):
+        known = ground.interpolate(xy[at_daylight])
+        elevations[at_daylight] = np.where(np.isnan(known), elevations[at_daylight], known)
     lost = np.isnan(elevations)  # by rounding, at an edge
     if lost.any():
         elevations[lost] = skirt.interpolate(xy[lost], method="linear", extrapolate="nearest")

@@ -220,6 +220,13 @@ def test_ground_that_does_not_tell_the_side_is_refused():
         build(make_line(10.0), make_line(5.0), ground=few)
 
 
+def test_a_distance_in_degrees_is_refused():
+    path = [[10.5, 0], [10.5, 40], [10.5, 80]]
+    with pytest.raises(ts.CrsError, match="are angles"):
+        build(make_line(10.0, path), make_line(5.0, path), crs="EPSG:4326",
+              ground=[[9, 0, 10], [9, 80, 10], [12, 0, 5], [12, 80, 5]])  # fmt: skip
+
+
 @pytest.mark.parametrize(
     "path",
     [
