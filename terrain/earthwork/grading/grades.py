@@ -197,7 +197,7 @@ def outline_patch(
     tolerance = measure_tolerance(tin.points)
     rims = [rim for slope in slopes for rim in slope.find_rim(pad.polygon, tolerance)]
     edges = [_insert(pad, ring, rims, tolerance) for ring in shapely.get_rings(pad.polygon)]
-    rings = _trace_outline(edges, rims, slopes)
+    rings = [_lift(ring, tin, slopes, [*edges, *rims]) for ring in _trace(edges, rims, slopes)]
     breaks = [line for slope in slopes for line in slope.find_breaks()]
     _snap(breaks, np.concatenate([*edges, *rims]), tolerance)
     lines = [Breakline(line, name="slope") for line in breaks if np.ptp(line[:, :2], axis=0).any()]
@@ -226,10 +226,10 @@ def _insert(pad: Pad, exterior: Any, rims: list[Float64Array], tolerance: float)
     return np.column_stack([closed, pad.measure_heights(closed)])
 
 
-def _trace_outline(
+def _trace(
     edges: list[Float64Array], rims: list[Float64Array], slopes: list[Slope]
 ) -> list[Float64Array]:
-    """Return the rings around pad and slopes."""
+    """Return the rings around pad and slopes, (k, 2) each."""
     import shapely
 
     lines = [shapely.linestrings(line[:, :2]) for line in (*edges, *rims)]
@@ -241,17 +241,20 @@ def _trace_outline(
     is_kept = shapely.contains(pad, places)
     for slope in slopes:
         is_kept |= slope.are_made(shapely.get_coordinates(places))
-    known = {(x, y): z for x, y, z in np.concatenate([*edges, *rims]).tolist()}
     joined = shapely.coverage_union_all(faces[is_kept])
-    rings = [shapely.get_coordinates(ring) for ring in shapely.get_rings(joined)]
-    return [_lift(ring, known, slopes) for ring in rings]
+    return [shapely.get_coordinates(ring) for ring in shapely.get_rings(joined)]
 
 
 def _lift(
-    ring: Float64Array, known: dict[tuple[float, float], float], slopes: list[Slope]
+    ring: Float64Array, tin: TIN, slopes: list[Slope], lines: list[Float64Array]
 ) -> Float64Array:
-    """Return a ring with elevations: where lines cross but for rounding, those of the slope."""
-    z = [known.get((x, y), np.nan) for x, y in ring.tolist()]
+    """Return a ring with elevations: where daylight lines cross, those of the ground.
+
+    Where that ends, by rounding, those of the slope.
+    """
+    known = {(x, y): z for x, y, z in np.concatenate(lines).tolist()}
+    found = tin.interpolate(ring).tolist()
+    z = [known.get((x, y), own) for (x, y), own in zip(ring.tolist(), found, strict=True)]
     for slope in slopes:
         z = [
             slope.interpolate(place) if np.isnan(own) else own

@@ -30,12 +30,21 @@ class _Bed:
         import shapely
 
         self.polygon = shapely.orient_polygons(sheet.area)
-        self._tin = sheet.tin
         self._known = {(x, y): z for x, y, z in sheet.tin.points.tolist()}
+        rings = [shapely.get_coordinates(one) for one in shapely.get_rings(self.polygon)]
+        pairs = np.concatenate([np.stack([one[:-1], one[1:]], axis=1) for one in rings])
+        heights = [self._known[x, y] for x, y in pairs.reshape(-1, 2).tolist()]
+        self._edges = np.dstack([pairs, np.reshape(heights, (-1, 2))])
+        self._tree = shapely.STRtree(shapely.linestrings(pairs))
 
     def measure_heights(self, xy: Float64Array) -> Float64Array:
-        """Return elevations at places on its edge."""
-        found = self._tin.interpolate(xy, method="linear", extrapolate="nearest")
+        """Return elevations at places on its edge, to which some are moved by rounding."""
+        import shapely
+
+        start, end = self._edges[self._tree.nearest(shapely.points(xy))].swapaxes(0, 1)
+        way = end - start
+        share = ((xy - start[:, :2]) * way[:, :2]).sum(axis=1) / (way[:, :2] ** 2).sum(axis=1)
+        found = start[:, 2] + np.clip(share, 0.0, 1.0) * way[:, 2]
         known = [self._known.get((x, y), z) for (x, y), z in zip(xy.tolist(), found, strict=True)]
         return np.array(known)
 
