@@ -170,7 +170,7 @@ def _choose_band(raster: Raster, band: str | None) -> tuple[CRS, str, float, lis
         try:
             unit = Unit.of(unit)
         except OptionError:
-            unit = Unit(unit, unit, None)
+            unit = Unit(str(unit), str(unit), None)
     if name not in raster.units or (unit is not None and unit.metres is None):
         raise FormatError(
             f"Cannot write {FILE}: tiles hold elevations, and the unit of the band '{name}' is no "
@@ -190,10 +190,10 @@ def _encode(values: Float64Array, code: _Code, fill: float | None) -> bytes:
 
     is_known = np.isfinite(values)
     known = np.where(is_known, values, code.base if fill is None else fill)
-    numbers = np.rint((known - code.base) / code.step).astype(np.uint32)
+    numbers = np.rint((known - code.base) / code.step).astype(np.int64)
     colors = [numbers >> 16, numbers >> 8 & 255, numbers & 255]
     if fill is None and not is_known.all():
-        colors.append(255 * is_known.astype(np.uint32))
+        colors.append(255 * is_known.astype(np.int64))
     content = BytesIO()
     fromarray(np.stack(colors, axis=2).astype(np.uint8)).save(content, "PNG")
     return content.getvalue()

@@ -30,7 +30,7 @@ from ..isolated import (
     translate_system_errors,
 )
 from ..registry import HEAD_BYTES, find_reference_kind
-from .geojson.joining import join_at_antimeridian
+from .geojson import join_at_antimeridian
 from .layers import Layer, name_apart, name_columns
 from .signatures import is_parquet
 from .well_known_binary import replace_surfaces

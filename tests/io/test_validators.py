@@ -9,6 +9,7 @@ import sys
 import warnings
 from pathlib import Path
 
+import numpy as np
 import pytest
 from support.product_calls import HILL, RESULTS
 from support.surfaces import hills
@@ -112,6 +113,11 @@ def test_glb_passes_the_validator_of_khronos(tmp_path, made, validate):
 
 def test_geojson_passes_check_geojson(tmp_path, made, validate):
     paths = write_each(made, (ts.TIN, ts.Features), ".geojson", tmp_path)
+    points = [[0, 0, 1], [90_000, 0, 2], [0, 90_000, 3], [90_000, 90_000, 4]]
+    far = ts.triangulate(np.array(points) + np.array([300_000, 7e6, 0]), crs="EPSG:32601")
+    for kind in ("triangles", "edges", "hull"):  # cut at the antimeridian
+        paths[kind] = ts.write(far, tmp_path / f"{kind}-cut.geojson", kind=kind)
+        assert "Multi" in paths[kind].read_text()
     assert validate(paths) == {}
 
 

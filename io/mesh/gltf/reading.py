@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from ....base import optional
-from ....base.crs import CRS, METRE
+from ....base.crs import CRS, METRE, Unit
 from ....base.errors import CrsError, ReadError
 from ....base.sentences import FILE, counted
 from ...reprojection import reproject
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 _HEADER, _CHUNK = struct.Struct("<4sII"), struct.Struct("<II")
 _JSON, _BINARY = 0x4E4F534A, 0x004E4942
-_TYPES = {5121: "<u1", 5123: "<u2", 5125: "<u4", 5126: "<f4"}
+_TYPES = {"5121": "<u1", "5123": "<u2", "5125": "<u4", "5126": "<f4"}
 _WIDTHS = {"SCALAR": 1, "VEC3": 3}
 _TRIANGLES = 4
 _SURFACES = (4, 5, 6)
@@ -45,16 +45,17 @@ class _File(NamedTuple):
     def get(self, kind: str, number: Any) -> dict[str, Any]:
         """Return an entry of a list of the document."""
         entries = self.document.get(kind)
-        is_there = isinstance(entries, list) and type(number) is int and 0 <= number < len(entries)
-        if not is_there or not isinstance(entries[number], dict):
-            raise ReadError(f"{FILE} is damaged: {kind} has no entry {number!r}.")
-        return dict(entries[number])
+        if isinstance(entries, list) and type(number) is int and 0 <= number < len(entries):
+            found = entries[number]
+            if isinstance(found, dict):
+                return found
+        raise ReadError(f"{FILE} is damaged: {kind} has no entry {number!r}.")
 
     def read(self, number: Any, width: str) -> AnyArray:
         """Return the rows of an accessor."""
         one = self.get("accessors", number)
         view = self.get("bufferViews", one.get("bufferView"))
-        dtype = np.dtype(_TYPES.get(one.get("componentType"), "V1"))
+        dtype = np.dtype(_TYPES.get(str(one.get("componentType")), "V1"))
         if "sparse" in one or dtype.kind == "V" or one.get("type") != width:
             raise ReadError(
                 f"{FILE} holds numbers of accessor {number} in a form that is not read."
@@ -64,9 +65,10 @@ class _File(NamedTuple):
                 f"{FILE} keeps numbers in another file, and a file of one piece is needed."
             )
         step = dtype.itemsize * _WIDTHS[width]
-        numbers = (one.get("count"), view.get("byteStride", step), one.get("byteOffset", 0),
-                   view.get("byteOffset", 0))  # fmt: skip
-        if not all(type(value) is int and value >= 0 for value in numbers):
+        places = [one.get("count"), view.get("byteStride", step)]
+        places += [part.get("byteOffset", 0) for part in (one, view)]
+        numbers = [place for place in places if type(place) is int and place >= 0]
+        if len(numbers) < len(places):
             raise ReadError(f"{FILE} is damaged: accessor {number} names no part of it.")
         count, stride, start, base = numbers
         end = base + start + (count - 1) * stride + step if count else 0
@@ -91,7 +93,8 @@ def read(path: Path) -> Mesh:
     count, skipped, rounding = 0, 0, 0.0
     told: dict[str, Any] = {}
     for node, matrix in _list_nodes(file):
-        for primitive in file.get("meshes", node["mesh"]).get("primitives", ()):
+        primitives = file.get("meshes", node["mesh"]).get("primitives")
+        for primitive in primitives if isinstance(primitives, list) else []:
             mode = primitive.get("mode", _TRIANGLES) if isinstance(primitive, dict) else None
             if mode not in _SURFACES:
                 skipped += 1
@@ -119,11 +122,16 @@ def read(path: Path) -> Mesh:
         places,
         corners.ravel(),
         np.arange(0, corners.size + 1, 3),
-        crs=told.get("crs"),
-        elevation_unit=told.get("elevationUnit"),
+        crs=_take_text(told, "crs"),
+        elevation_unit=_take_text(told, "elevationUnit"),
         notes=[f"Not read: {parts}."] if skipped else [],
         rounding=rounding,
     )
+
+
+def _take_text(extras: dict[str, Any], name: str) -> str | None:
+    text = extras.get(name)
+    return text if isinstance(text, str) and text else None
 
 
 def _open(content: bytes) -> _File:
@@ -198,7 +206,7 @@ def _find_matrix(node: dict[str, Any], number: int) -> Float64Array:
             matrix = np.eye(4)
             matrix[:3, :3] = turn * np.array(node.get("scale", (1, 1, 1)), np.float64).reshape(3)
             matrix[:3, 3] = np.array(node.get("translation", (0, 0, 0)), np.float64).reshape(3)
-    except (ValueError, TypeError):
+    except (ValueError, TypeError, OverflowError):
         matrix = np.full((4, 4), np.nan)
     if not np.isfinite(matrix).all():
         raise ReadError(f"{FILE} is damaged: the transformation of node {number} is none.")
@@ -216,12 +224,12 @@ def _read_primitive(
         raise ReadError(f"{FILE} holds positions in a form that is not read.")
     local = rows.astype(np.float64)
     if "indices" in primitive:
-        numbers = file.read(primitive["indices"], "SCALAR").astype(np.float64)
-        if len(numbers) and not (numbers < len(local)).all():
+        rows = file.read(primitive["indices"], "SCALAR")
+        if rows.dtype.kind == "f" or not (rows < len(local)).all():
             raise ReadError(f"{FILE} is damaged: a triangle has a corner that is not there.")
-        numbers = numbers.astype(np.int64)
+        numbers: Int64Array = rows.astype(np.int64)
     else:
-        numbers = np.arange(len(local))
+        numbers = np.arange(len(local), dtype=np.int64)
     if mode == _TRIANGLES:
         return local, numbers[: len(numbers) // 3 * 3].reshape(-1, 3)
     first = np.arange(max(len(numbers) - 2, 0))
@@ -231,7 +239,7 @@ def _read_primitive(
         if mode == _SURFACES[1]
         else np.column_stack([first + 1, first + 2, np.zeros_like(first)])
     )
-    return local, numbers[at]
+    return local, np.asarray(numbers[at])
 
 
 def _restore(
@@ -242,7 +250,7 @@ def _restore(
         origin = np.array(extras["origin"], np.float64).reshape(3)
         metres = np.array(extras.get("metres", (1, 1, 1)), np.float64).reshape(3)
         factor = float(extras.get("exaggeration", 1.0))
-    except (ValueError, TypeError):
+    except (ValueError, TypeError, OverflowError):
         origin = metres = np.full(3, np.nan)
         factor = 1.0
     scale = metres * (1.0, 1.0, factor)
@@ -259,9 +267,7 @@ def _restore(
 
 def _leave_globe(cartesian: Float64Array, extras: dict[str, Any]) -> Float64Array:
     """Return points of the globe in the CRS that the file names."""
-    from ....base.crs import Unit
-
-    crs = CRS.of(extras.get("crs") or None)
+    crs = CRS.of(_take_text(extras, "crs"))
     if crs is None:
         raise CrsError(f"{FILE} lies on the globe, and does not tell its CRS.")
     transformer = optional.load("pyproj").Transformer.from_crs(
@@ -270,5 +276,5 @@ def _leave_globe(cartesian: Float64Array, extras: dict[str, Any]) -> Float64Arra
     places = np.column_stack(transformer.transform(*cartesian.T))
     if has_heights(crs):
         return reproject(places, CRS(_ELLIPSOIDAL), crs, unit=None).points.copy()
-    unit = Unit.of(extras.get("elevationUnit") or None) or crs.usual_elevation_unit
+    unit = Unit.of(_take_text(extras, "elevationUnit")) or crs.usual_elevation_unit
     return reproject(places, CRS(_FLAT), crs.horizontal, unit=METRE, wanted=unit).points.copy()

@@ -233,7 +233,8 @@ def _cut_polygons(xyz: Float64Array, levels: tuple[AnyArray, ...], row: int) -> 
             for ring in range(*levels[1][number : number + 2])
         ]
         pieces += _cut_polygon(rings)
-    return shapely.orient_polygons(np.array(pieces, object))
+    turned: ObjectArray = shapely.orient_polygons(np.array(pieces, object))
+    return turned
 
 
 def _cut_polygon(rings: list[Float64Array]) -> list[object]:
@@ -263,6 +264,6 @@ def _cut_polygon(rings: list[Float64Array]) -> list[object]:
 def _move_home(xyz: Float64Array) -> Float64Array:
     """Return a piece between -180 and 180."""
     side = _find_side(xyz[:, 0].max())
-    moved = xyz - (TURN * side, 0.0, 0.0)
-    moved[:, 0] = np.round(moved[:, 0], DEGREE_DECIMALS)
+    moved = xyz.copy()
+    moved[:, 0] = np.round(moved[:, 0] - TURN * side, DEGREE_DECIMALS)
     return moved

@@ -130,4 +130,5 @@ def _restore_triangle(shape: object) -> object | None:
         if away.min() > _FLAT:
             return None
         xyz = np.delete(xyz, int(away.argmin()), axis=0)
-    return shapely.Polygon(xyz)
+    triangle: object = shapely.Polygon(xyz)
+    return triangle

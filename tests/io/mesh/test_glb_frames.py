@@ -162,6 +162,11 @@ def damage(document, **changes):
             {**one, "byteOffset": 10**9} for one in d["bufferViews"]])),
         ("form that is not read", lambda d: damage(d, accessors=[
             {**one, "componentType": 5120} for one in d["accessors"]])),
+        ("form that is not read", lambda d: damage(d, accessors=[
+            {**one, "componentType": []} for one in d["accessors"]])),
+        ("holds no triangles", lambda d: damage(d, meshes=[{"primitives": 3}])),
+        ("extras do not tell", lambda d: damage(d, nodes=[
+            {"mesh": 0, "extras": {"origin": [10**400, 0, 0]}}])),
         ("in another file", lambda d: damage(d, buffers=[{"uri": "a.bin", "byteLength": 4}])),
         ("names no part", lambda d: damage(d, accessors=[
             {**one, "count": -1} for one in d["accessors"]])),
