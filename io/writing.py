@@ -81,7 +81,7 @@ def write(
     **options
         Options of the writer, which ``tinsmith formats NAME`` explains. Of text and tables:
         ``columns``, ``delimiter``, ``header``, ``decimals``; of rasters ``dtype``, ``nodata``,
-        ``overviews``, ``compression``, ``band``, ``encoding``, ``gaps``, ``min_zoom``,
+        ``overviews``, ``compression``, ``band``, ``tile_encoding``, ``gaps``, ``min_zoom``,
         ``max_zoom``; of vector files ``kind``, ``layer``, ``append``,
         ``overwrite``, ``compact``, ``projected``, ``multipatch``; of LandXML and DXF ``name``,
         ``unit``, ``version``, ``labels``, ``label_height``; of meshes ``ortho``, ``exaggeration``,

@@ -383,7 +383,17 @@ def names_of_pages(tmp_path, monkeypatch):
     return {"ts": ts, "np": np, "survey": survey} | surfaces | lines | rings | edge | points
 
 
+TOLD = (
+    "Tiles of 512 pixels",
+    "Pixels without data",
+    "The unit of elevations is not known, and taken",
+    "The elevations are not known above the ellipsoid",
+)
+"""Warnings that the pages speak of."""
+
+
 @pytest.mark.slow
+@pytest.mark.filterwarnings(*(f"ignore:.*{one}:tinsmith.LossWarning" for one in TOLD))
 @pytest.mark.parametrize("page", PAGES, ids=name_page)
 def test_python_of_the_pages_runs(page, names_of_pages):
     """Run the blocks of a page, one after the other."""

@@ -68,7 +68,7 @@ def write(
     path: Path,
     *,
     band: str | None = None,
-    encoding: TileEncoding = "terrarium",
+    tile_encoding: TileEncoding = "terrarium",
     gaps: TileGaps = "lowest",
     min_zoom: int | None = None,
     max_zoom: int | None = None,
@@ -80,7 +80,7 @@ def write(
     ----------
     band : str, optional
         Needed if there are several.
-    encoding : {"terrarium", "mapbox"}
+    tile_encoding : {"terrarium", "mapbox"}
         How pixels mean elevations: in steps of 1/256 m, or of 0.1 m as terrain-RGB of Mapbox.
     gaps : {"lowest", "transparent"}
         What pixels without data show: the lowest elevation, or nothing, which MapLibre takes for
@@ -116,7 +116,7 @@ def write(
     between the centres of four cells; a pixel of a coarser tile is the mean of four. Tiles without
     data are left out. Memory does not grow with the raster.
     """
-    code = _CODES[choice("encoding", encoding, TileEncoding)]
+    code = _CODES[choice("tile_encoding", tile_encoding, TileEncoding)]
     choice("gaps", gaps, TileGaps)
     is_pmtiles = path.suffix.lower() == ".pmtiles"
     if is_pmtiles:
@@ -142,7 +142,7 @@ def write(
                 "name": raster.name or band,
                 "description": " ".join([*notes, *raster.notes]),
                 "crs": str(raster.crs),
-                "encoding": encoding,
+                "encoding": tile_encoding,
             }
             archive.executemany("INSERT INTO metadata VALUES (?, ?)", sorted(about.items()))
             archive.commit()

@@ -52,7 +52,7 @@ def examine(case: Case) -> str:
     grid = ts.Grid(box, shape=(rows, columns), spacing=spacing)
     raster = ts.Raster({"elevation": np.where(is_gap, nodata, values)}, grid, crs=case["crs"],
                        nodata=nodata, units={"elevation": "m"})  # fmt: skip
-    options = {"encoding": case["encoding"], "gaps": case["shown"]}
+    options = {"tile_encoding": case["encoding"], "gaps": case["shown"]}
     with TemporaryDirectory() as folder, warnings.catch_warnings():
         warnings.simplefilter("ignore", ts.LossWarning)
         path = Path(folder, f"a{case['suffix']}")

@@ -37,7 +37,7 @@ def finest(about, tiles):
 @pytest.mark.parametrize("encoding", ["terrarium", "mapbox"])
 def test_pixels_are_the_bilinear_elevations(tmp_path, suffix, encoding):
     raster = make()
-    path = ts.write(raster, tmp_path / f"a{suffix}", encoding=encoding)
+    path = ts.write(raster, tmp_path / f"a{suffix}", tile_encoding=encoding)
     about, tiles = read_archive(path)
     assert about["encoding"] == encoding
     values, worst, count = np.asarray(raster.bands["elevation"]), 0.0, 0
@@ -178,7 +178,7 @@ def test_what_makes_no_tiles_is_refused(tmp_path):
         (ts.OptionError, "band", make(), {"band": "slope"}),
         (ts.OptionError, "max_zoom", make(), {"max_zoom": 25}),
         (ts.OptionError, "min_zoom", make(), {"min_zoom": 12, "max_zoom": 11}),
-        (ts.OptionError, "encoding", make(), {"encoding": "png"}),
+        (ts.OptionError, "tile_encoding", make(), {"tile_encoding": "png"}),
         (ts.OptionError, "gaps", make(), {"gaps": "none"}),
         (ts.WriteError, "antimeridian", make(crs="EPSG:32601", west=300_000, south=7e6,
                                              spacing=1_000.0), {}),
@@ -196,7 +196,7 @@ def test_what_makes_no_tiles_is_refused(tmp_path):
                      crs=UTM16, units={"elevation": "m"})  # fmt: skip
     with pytest.raises(ts.WriteError, match="pixels have those from"):
         ts.write(high, path)
-    ts.write(high, tmp_path / "b.pmtiles", encoding="mapbox")
+    ts.write(high, tmp_path / "b.pmtiles", tile_encoding="mapbox")
     assert path.read_text() == "old"
 
 
