@@ -30,7 +30,6 @@ from ..isolated import (
     translate_system_errors,
 )
 from ..registry import HEAD_BYTES, find_reference_kind
-from .geojson import join_at_antimeridian
 from .layers import Layer, name_apart, name_columns
 from .signatures import is_parquet
 from .well_known_binary import replace_surfaces
@@ -106,13 +105,9 @@ def _read_layer(path: Path, layer: str | None, where: str | None, *, lines_only:
     crs = None if head.names_no_crs else CRS.of(value["crs"])
     in_metres = head.is_json and crs is not None and crs.is_geographic  # by RFC 7946
     unit = value["elevation_unit"] or head.elevation_unit or ("metre" if in_metres else "")
-    value |= {"elevation_unit": unit}
-    features = make_layer(path, value, arrays, crs, has_surfaces=not lines_only)
-    if in_metres:
-        shapes, joined = join_at_antimeridian(features.geometries)
-        notes = (f"'{path.name}': {note}" for note in joined)
-        features = features._replace(geometries=shapes, notes=(*features.notes, *notes))
-    return _drop_heights_above_ground(features)
+    return _drop_heights_above_ground(
+        make_layer(path, value | {"elevation_unit": unit}, arrays, crs, has_surfaces=not lines_only)
+    )
 
 
 def make_layer(

@@ -15,6 +15,7 @@ from ...base.results import Features
 from ...base.sentences import FILE, counted, inflect
 from ..reprojection import checking_crs
 from .features import read_features
+from .geojson import join_at_antimeridian
 from .parts import Wanted, crs_notes, move_to_crs
 from .point_tables import is_point_table, read_point_table
 
@@ -81,7 +82,7 @@ def read_geometries(
         if layer is None and is_point_table(file):
             read = read_point_table(file, wanted, drape=True, kind=_require_kind(table))
         else:
-            read = read_features(file, layer=layer)
+            read = join_at_antimeridian(read_features(file, layer=layer), wanted.crs)
         shapes = shapely.orient_polygons(shapely.force_2d(read.geometries))
         kind = _find_kind(shapes, read)
         columns = read.columns

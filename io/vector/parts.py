@@ -13,6 +13,7 @@ from ...base.sentences import FILE, counted
 from ...tin.topology import find_offsets
 from ..reprojection import find_conversion_factor, place
 from .elevations import find_elevation_unit
+from .geojson import join_at_antimeridian
 from .layers import list_lines, take_apart
 
 if TYPE_CHECKING:
@@ -67,6 +68,7 @@ def split_into_parts(
         If the lines cannot be brought into the CRS.
     """
     shapely = optional.load("shapely")
+    features = join_at_antimeridian(features, wanted.crs)
     shapes, of_shapes = take_apart(features)
     points = np.flatnonzero(shapely.get_type_id(shapes) == 0)
     if len(points):

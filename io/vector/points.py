@@ -23,6 +23,7 @@ from ..registry import taking
 from ..reprojection import place, settle_unit
 from .elevations import find_elevation_unit, find_elevations
 from .features import read_features
+from .geojson import join_at_antimeridian
 from .layers import Layer, list_lines, take_apart
 
 if TYPE_CHECKING:
@@ -116,6 +117,7 @@ def read_layer(path: Path, asked: Asked) -> Survey | TIN:
     """Read a layer as :func:`read` does."""
     role = None if asked.lines_as is None else choice("lines_as", asked.lines_as, LineReading)
     features = read_features(path, layer=asked.layer, where=asked.where)
+    features = join_at_antimeridian(features, asked.target)
     kinds = list_kinds(features)
     if kinds == {POINT}:
         return _make_survey(gather_points(features), features, asked)

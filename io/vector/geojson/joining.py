@@ -7,44 +7,55 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ....base import optional
+from ....base.errors import CrsError
 from ....base.sentences import counted, inflect
+from ...reprojection import reproject
 from .antimeridian import HALF_TURN, TURN, find_west_and_east
 
 if TYPE_CHECKING:
     from ....base.arrays import Float64Array, Int64Array, ObjectArray
+    from ....base.crs import CRS
+    from ..layers import Layer
 
 _MULTI_LINE, _MULTI_POLYGON = 5, 6
 _TRIANGLE = 4
 """Coordinates of its ring."""
 
+_STEP, _FARTHEST = 1e-6, 1e3
+"""Degrees between places, and how many times as far apart the map may have them across its end."""
+
 _FLAT = 0.01
 """Of the length of a side: how far a crossing lies from it at most in longitude and latitude."""
 
 
-def join_at_antimeridian(shapes: ObjectArray) -> tuple[ObjectArray, tuple[str, ...]]:
-    """Join the parts of features that meet at the antimeridian; longitudes then go on beyond 180.
+def join_at_antimeridian(features: Layer, target: CRS | None) -> Layer:
+    """Join the parts of features that meet at the antimeridian, where the target goes on there.
+
+    Longitudes of a layer with such features go on beyond 180, and a note tells it. The layer stays
+    as it is if no feature was cut; if it is more than 180 degrees wide, as that of the whole world,
+    of which other features must not move; or if the map of the target ends there. Triangles are
+    triangles again.
 
     Parameters
     ----------
-    shapes : (n,) array of shapely.Geometry
-        In longitude and latitude, degrees.
-
-    Returns
-    -------
-    tuple
-        Geometries, and what was done in sentences. They are as they were if none was cut, or all
-        together reach round the Earth. Triangles are triangles again.
+    features : Layer
+    target : CRS or None
+        To which they will be brought.
     """
     shapely = optional.load("shapely")
+    shapes, crs = features.geometries, features.crs
+    if crs is None or not crs.is_geographic or target is None or target.is_geographic:
+        return features
     bounds, kinds = shapely.bounds(shapes), shapely.get_type_id(shapes)
     is_across = (bounds[:, 0] == -HALF_TURN) & (bounds[:, 2] == HALF_TURN)
     rows = np.flatnonzero(is_across & np.isin(kinds, (_MULTI_LINE, _MULTI_POLYGON)))
     if len(rows) == 0:
-        return shapes, ()
+        return features
     spans = shapely.bounds(shapely.get_parts(shapes))[:, [0, 2]]
     west, east = find_west_and_east(spans)
-    if west < east:
-        return shapes, ()
+    is_narrow = west > east and TURN + east - west <= HALF_TURN
+    if not is_narrow or not _goes_on(crs, target, bounds[rows][:, [1, 3]].ravel()):
+        return features
     moved = shapes.copy()
     for has_z in (False, True):
         some = shapely.has_z(shapes) == has_z
@@ -57,13 +68,24 @@ def join_at_antimeridian(shapes: ObjectArray) -> tuple[ObjectArray, tuple[str, .
     is_joined = shapely.get_num_geometries(moved) < shapely.get_num_geometries(shapes)
     count = int(is_joined.sum())
     if count == 0:
-        return shapes, ()
+        return features
     _restore_triangles(moved, np.flatnonzero(is_joined))
     what = inflect(f"{counted(count, 'feature')} that [was|were] cut", count)
-    return moved, (
-        f"{what} at the antimeridian {inflect('[is|are]', count)} joined again: longitudes go on "
-        "beyond 180.",
-    )
+    note = f"'{features.path.name}': {what} at the antimeridian {inflect('[is|are]', count)}"
+    return features._replace(geometries=moved, notes=(*features.notes, f"{note} joined again."))
+
+
+def _goes_on(crs: CRS, target: CRS, latitudes: Float64Array) -> bool:
+    """Whether the map of the target has no end at the antimeridian."""
+    ways = HALF_TURN - _STEP * np.array([3.0, 1.0, -1.0])
+    rows = np.array([(x, y, 0.0) for y in np.unique(latitudes) for x in (ways + HALF_TURN) % TURN
+                     - HALF_TURN])  # fmt: skip
+    try:
+        found = reproject(rows, crs.horizontal, target.horizontal, unit=None).points
+    except CrsError:
+        return False
+    steps = np.linalg.norm(np.diff(found.reshape(-1, 3, 3)[..., :2], axis=1), axis=2)
+    return bool((steps[:, 1] <= _FARTHEST * steps[:, 0]).all())
 
 
 def _go_on(xyz: Float64Array, west: float) -> Float64Array:

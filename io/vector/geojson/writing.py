@@ -98,7 +98,7 @@ def write(
     What crosses the antimeridian is cut there, as section 3.1.9 asks, into a MultiPolygon or
     MultiLineString, of which a LossWarning tells: at the place where the straight way in the CRS
     crosses it, with the elevation that is linear between its ends; the members ``bbox`` then have
-    west > east. Reading joins the parts again.
+    west > east. Reading joins the parts again, in a CRS whose map goes on there.
 
     The file is written in batches; beside the surface itself memory holds about 100 bytes for
     each vertex.

@@ -259,3 +259,26 @@ def test_parts_that_do_not_meet_are_left_apart(tmp_path):
     path = tmp_path / "a.geojson"
     path.write_text(json.dumps({"type": "FeatureCollection", "features": [feature]}))
     assert len(ts.read_lines(path, crs=UTM1)) == 2
+
+
+def test_a_file_of_the_whole_world_stays_as_it_is(tmp_path):
+    """Features elsewhere must not move by 360 degrees because another one was cut."""
+    cut = [[[170, 60], [180, 60], [180, 70], [170, 60]]], [[[-180, 60], [-170, 65], [-180, 70],
+                                                            [-180, 60]]]  # fmt: skip
+    here = [[[0, 40], [10, 40], [10, 50], [0, 40]]]
+    geometries = [
+        {"type": "MultiPolygon", "coordinates": [*cut]},
+        {"type": "Polygon", "coordinates": here},
+    ]
+    features = [{"type": "Feature", "properties": {}, "geometry": one} for one in geometries]
+    path = tmp_path / "a.geojson"
+    path.write_text(json.dumps({"type": "FeatureCollection", "features": features}))
+    pacific = "+proj=eqc +lon_0=180 +ellps=WGS84 +type=crs"
+    assert len(ts.read_rings(path, crs=pacific)) == 3
+    path.write_text(json.dumps({"type": "FeatureCollection", "features": features[:1]}))
+    (ring,) = ts.read_rings(path, crs=pacific)
+    ends = ring[:, 0].min() / DEGREE, ring[:, 0].max() / DEGREE
+    assert ends == pytest.approx((-10, 10))
+    # The map of Mercator ends there: joined, the ring would go all round it.
+    rings = ts.read_rings(path, crs="EPSG:3857")
+    assert sorted(np.ptp(ring[:, 0]) / DEGREE for ring in rings) == pytest.approx([10, 10])
