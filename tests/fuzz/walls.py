@@ -140,8 +140,10 @@ def _require_side(case: Case, made: Any, path: Any) -> str:
     toward = left[long] * (1.0 if case["left"] else -1.0)
     at_top = made.interpolate(middle)
     at_foot = made.interpolate(middle - toward * case["walls"] * (1 + 1e-6))
-    assert np.abs(at_top - case["base"] - max(rise)).max() <= 1e-6
-    assert np.nanmax(np.abs(at_foot - case["base"])) <= 0.02 * max(rise) + 1e-6
+    # Middles are off the lines by roundings, and the face is steep.
+    slack = 1e-6 + 4.0 * np.spacing(np.abs(path).max()) * max(rise) / case["walls"]
+    assert np.abs(at_top - case["base"] - max(rise)).max() <= slack
+    assert np.nanmax(np.abs(at_foot - case["base"])) <= 0.02 * max(rise) + slack
     return "line"
 
 

@@ -30,6 +30,8 @@ _BESIDE = 0.05
 """Of a segment: so far beside it the elevations of the ground are compared."""
 _SHARES = np.array([0.1, 0.3, 0.5, 0.7, 0.9])
 """Places on a segment at which they are."""
+_CLEAR = 0.75
+"""Of the length of a wall: along so much of it one side must be the lower one."""
 _SHARPEST = 0.05
 """1 plus the cosine of a turn, at least: sharper ones turn back."""
 _BLOCK = 256
@@ -205,7 +207,10 @@ def _find_sides(
     for wall, rise, weight in zip(walls, rises, weights, strict=True):
         known = np.isfinite(rise)
         balance = float((rise * weight)[known].sum())
-        if balance == 0.0:
+        side = 1 if balance > 0.0 else -1
+        agrees = known & (rise * side > 0.0)
+        share = float(weight[agrees].sum() / weight.sum())
+        if share < _CLEAR:
             x, y = wall.path[0].tolist()
             raise LinesError(
                 f"The points do not tell on which side of the wall along {lines.label(wall.upper)},"
@@ -213,9 +218,7 @@ def _find_sides(
                 "it are needed.",
                 lines=[wall.upper, *wall.lower],
             )
-        side = 1 if balance > 0.0 else -1
-        agrees = known & (rise * side > 0.0)
-        sides.append((side, float(weight[agrees].sum() / weight.sum())))
+        sides.append((side, share))
     return sides
 
 

@@ -179,7 +179,7 @@ def test_points_on_the_face_are_told():
 
 def test_ground_that_is_lower_on_the_upper_side_for_a_part_is_told():
     ground = make_ground()
-    is_south = (ground[:, 0] < 50) & (ground[:, 1] < 25)
+    is_south = (ground[:, 0] < 50) & (ground[:, 1] < 12)
     ground[is_south, 2] = 4.0
     note = find_note(build(make_line(10.0), make_line(5.0), ground=ground))
     assert "where it is so along" in note
@@ -230,8 +230,8 @@ def test_a_distance_in_degrees_is_refused():
 @pytest.mark.parametrize(
     "path",
     [
-        [[50, 0], [50, 60], [50.02, 0]],
-        [[50, 0], [50, 50], [50.2, 50], [50.2, 0]],
+        [[50, 0], [50, 90], [50.02, 80]],
+        [[50, 0], [50, 90], [50.6, 90], [50.6, 85]],
         [[50, 0], [50, 50], [60, 50], [50, 50], [50, 90]],
     ],
     ids=["back", "narrow", "touches itself"],
