@@ -61,7 +61,8 @@ def choose_stations(
             raise OptionError("interval", interval, f"one that makes at most {_MOST:,} sections")
         low, high = road.lap or span
         first, last = math.ceil(low / interval), math.floor(high / interval)
-        parts.append(road.repeat(np.arange(first, last + 1) * interval))
+        multiples = np.asarray(np.arange(first, last + 1) * interval, np.float64)
+        parts.append(road.repeat(multiples))
     return _join_near(np.unique(np.concatenate(parts)), ends, span, axis.rounding)
 
 
