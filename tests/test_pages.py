@@ -197,7 +197,7 @@ def level_figures(said):
 
 # --------------------------------------------------------------------------- all is looked at
 
-LANGUAGES = {"python", "pycon", "sh", "bash", "console", "toml", "json", "cpp", "text"}
+LANGUAGES = {"python", "pycon", "sh", "bash", "console", "toml", "json", "js", "cpp", "text"}
 RUN_ELSEWHERE = ("tinsmith", "qgis_process", "docker", "rattler-build", "eval")
 
 
