@@ -257,7 +257,7 @@ def test_options_of_sheets_need_sheets(road, tmp_path):
     text = refuse("profile", ground, "--line", axis, "--scale", 500, "-o", table, code=2)
     assert "--scale is for a drawn profile: name a file that ends in .pdf, .svg, .dxf." in text
     text = refuse("profile", ground, "--line", axis, "-o", tmp_path / "a.pdf")
-    assert "Invalid vertical" in text
+    assert "has 2 gradient lines: name one by --vertical, of" in text
     assert "'FG', 'FG2'" in text
     text = refuse("profile", ground, "--line", axis, "--sections", 20, 10, "-o",
                   tmp_path / "a.pdf")  # fmt: skip

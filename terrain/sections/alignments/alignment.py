@@ -307,7 +307,9 @@ class Alignment:
         Raises
         ------
         OptionError
-            If there is none, or several and no name is given.
+            If there is none, or none of the name.
+        LinesError
+            If there are several, and no name is given.
 
         Examples
         --------
@@ -319,6 +321,9 @@ class Alignment:
         fitting = [one for one in self.verticals if name is None or one.name == name]
         if len(fitting) != 1:
             names = ", ".join(shown(one.name) for one in self.verticals) or "none: there is none"
+            if name is None and fitting:
+                count = counted(len(fitting), "gradient line")
+                raise LinesError(f"The alignment has {count}: name one by `vertical`, of {names}.")
             raise OptionError("vertical", name, allowed=f"one of {names}")
         return fitting[0]
 
