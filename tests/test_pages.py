@@ -85,6 +85,23 @@ def files(tmp_path_factory):
     return folder
 
 
+def write_street():
+    """Write a road with its profile, and tables of its cross section; a wall as two lines."""
+    tops = [(0, 321), (110, 323.5), (244, 324.2)]
+    gradient = ts.VerticalAlignment([ts.VerticalPoint(*one) for one in tops], "FG")
+    corners = MIDDLE + np.array([[-115, -25], [0, -5], [128, -10]])
+    street = ts.Alignment.from_points(corners, radii=150, crs=CRS, verticals=[gradient])
+    ts.write(street, "street.xml")
+    lanes = [f"{at},both,lane,{width},-0.025,turns," for at, width in ((60, 2), (150, 3))]
+    slopes = ["both,,,,cut,1", "both,,,,fill,1"]
+    rows = ["station,side,name,width,slope,use,ratio", *lanes, *(f",{row}" for row in slopes)]
+    Path("stations.csv").write_text("\n".join(rows) + "\n")
+    Path("turns.csv").write_text("station,left,right\n80,-0.025,-0.025\n120,0.03,-0.03\n")
+    line = MIDDLE + np.array([[-40.0, 20.0], [-10.0, 20.0]])
+    wall = [np.column_stack([line, [z, z]]) for z in (331.0, 327.0)]
+    ts.write(ts.Features.of_lines(np.concatenate(wall), [0, 2, 4], crs=CRS), "walls.dxf")
+
+
 def write_files():
     Path("sample_data").symlink_to(ROOT / "sample_data")
     survey = ts.read("sample_data/site_survey.csv", crs=CRS)
@@ -99,6 +116,7 @@ def write_files():
         MIDDLE + np.array([[-60, -30], [0, 5], [60, 40]]), radii=9, crs=CRS
     )
     ts.write(road, "road.xml")
+    write_street()
     crest = np.array([[-30.0, -10.0, 325.0], [30.0, 10.0, 325.0]])
     crest[:, :2] += MIDDLE
     ts.write(ts.Features.of_lines(crest, [0, 2], crs=CRS), "crest.gpkg")

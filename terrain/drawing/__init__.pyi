@@ -29,6 +29,7 @@ from .palette import choose_palette as choose_palette
 from .palette import interpolate_colors as interpolate_colors
 from .palette import interpolate_tints as interpolate_tints
 from .palette import parse_hex as parse_hex
+from .reproducible import fixed_dxf_dates as fixed_dxf_dates
 from .rounding import choose_ticks as choose_ticks
 from .rounding import format_number as format_number
 from .rounding import round_down as round_down

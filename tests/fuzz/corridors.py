@@ -21,6 +21,7 @@ _REFUSED = {
     "self": "lies over itself",
     "axis": "There is no room for the curves",
     "bend": "cannot be laid out near station",
+    "sharp": "the axis has to turn less sharply there",
     "end": "side slopes reach an end of the axis",
 }
 """What may be refused, and the sentences."""

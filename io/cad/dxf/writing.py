@@ -8,8 +8,6 @@ data.
 from __future__ import annotations
 
 import io
-from contextlib import contextmanager
-from importlib import import_module
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -23,6 +21,7 @@ from ....base.policies import DrawingVersion
 from ....base.results import Features
 from ....base.sentences import FILE
 from ....terrain import contour_labels
+from ....terrain.drawing import fixed_dxf_dates
 from ....tin import TIN, Surface, Survey
 from ....tin.topology import directed_edges, edge_keys
 from ...registry import select_attributes, warn_of_unknown_elevations
@@ -40,7 +39,6 @@ from .names import (
 )
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
     from pathlib import Path
 
     from ....base.arrays import AnyArray, Float64Array, Int64Array
@@ -112,7 +110,7 @@ def write(
     )
     if version == "R12" and obj.crs is not None:
         warn(f"{FILE} keeps no CRS and no unit: R12 has no place for them.")
-    with _fix_dates():
+    with fixed_dxf_dates():
         document = _make_document(ezdxf, obj, version, along, factor)
         stream = io.StringIO(newline="\n")
         document.write(stream)
@@ -186,18 +184,6 @@ def _set_view(document: Any, obj: TIN | Survey | Features, factor: float) -> Non
     middle, sides = (low + high)[:2] / 2, (high - low)[:2]
     height = float(max(sides[1], sides[0] / _WIDE)) * _AIR
     document.set_modelspace_vport(height or 1.0, center=tuple(middle.tolist()))
-
-
-@contextmanager
-def _fix_dates() -> Iterator[None]:
-    """Let ezdxf write the same dates and identifiers at any time."""
-    options = import_module("ezdxf").options
-    before = options.write_fixed_meta_data_for_testing
-    options.write_fixed_meta_data_for_testing = True
-    try:
-        yield
-    finally:
-        options.write_fixed_meta_data_for_testing = before
 
 
 def _count_handles(head: str, writer: EntityWriter) -> str:

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import io
-from contextlib import contextmanager
-from importlib import import_module
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -12,11 +10,12 @@ import numpy as np
 from ....base import optional
 from ....base.atomic import replacing
 from ....base.crs import FOOT, METRE, US_SURVEY_FOOT
+from ...drawing import fixed_dxf_dates
 from .canvas import HATCH_SPACING, PLAIN
 from .lettering import CAPITAL
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Mapping, Sequence
+    from collections.abc import Callable, Mapping, Sequence
     from pathlib import Path
     from typing import Unpack
 
@@ -59,7 +58,7 @@ def write_drawing(
 ) -> None:
     """Write sheets of a width in millimetres, each drawn by a function, from left to right."""
     ezdxf = optional.load("ezdxf", "Sheets as a drawing")
-    with _fix_dates():
+    with fixed_dxf_dates():
         document = ezdxf.new("R2010")
         document.header["$INSUNITS"] = _CODES.get(model.unit, 0)
         document.header["$MEASUREMENT"] = int(model.unit not in (FOOT, US_SURVEY_FOOT))
@@ -74,18 +73,6 @@ def write_drawing(
         document.write(stream)
     with replacing(path) as file:
         file.write(stream.getvalue().replace("\r\n", "\n").encode("utf-8", "replace"))
-
-
-@contextmanager
-def _fix_dates() -> Iterator[None]:
-    """Let ezdxf write the same dates and identifiers at any time."""
-    options = import_module("ezdxf").options
-    before = options.write_fixed_meta_data_for_testing
-    options.write_fixed_meta_data_for_testing = True
-    try:
-        yield
-    finally:
-        options.write_fixed_meta_data_for_testing = before
 
 
 def name_layers(names: Sequence[str], taken: Sequence[str]) -> list[str]:
