@@ -92,7 +92,7 @@ def test_bytes_do_not_depend_on_the_number_of_cores(tmp_path, monkeypatch, form,
     made = raster(600, 1100, dtype=dtype)
     written = set()
     for threads in ("1", "2", "5"):
-        monkeypatch.setattr(geotiff, "_choose_threads", lambda: threads)
+        monkeypatch.setattr(geotiff, "_choose_threads", lambda number=threads: number)
         written.add(ts.write(made, tmp_path / "a.tif", format=form).read_bytes())
     assert len(written) == 1
 
