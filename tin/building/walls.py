@@ -233,8 +233,7 @@ def _move(wall: _Wall, lines: LineSet, aside: float, least: float) -> Float64Arr
     left = np.column_stack([-way[:, 1], way[:, 0]])
     before, after = np.vstack([left[:1], left]), np.vstack([left, left[-1:]])
     if wall.is_closed:
-        before[0] = after[-1] = left[-1]
-        after[-1] = left[0]
+        before[0], after[-1] = left[-1], left[0]
     spread = 1.0 + (before * after).sum(axis=1)
     is_sharp = spread < _SHARPEST
     _, first, count = np.unique(

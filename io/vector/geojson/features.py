@@ -42,6 +42,15 @@ if TYPE_CHECKING:
 _BATCH = 16_384
 
 
+class Located(NamedTuple):
+    """Points in their CRS."""
+
+    points: Float64Array
+    """(n, 3)."""
+    crs: CRS | None
+    elevation_unit: Unit | None
+
+
 class Texts(NamedTuple):
     """Features of which positions and properties are written."""
 
@@ -182,9 +191,8 @@ def format_positions(xyz: Float64Array) -> ObjectArray:
 def cut_places(
     kind: Kind,
     levels: tuple[AnyArray, ...],
-    points: Float64Array,
+    located: Located,
     places: Float64Array,
-    system: tuple[CRS | None, Unit | None],
 ) -> Pieces:
     """Cut lines and polygons at the antimeridian, and tell of it.
 
@@ -193,14 +201,12 @@ def cut_places(
     kind : {"points", "lines", "polygons"}
     levels : tuple of int arrays
         As :class:`Features` has them.
-    points : (n, 3) float64 array
-        Of all features in their CRS, one after the other; NaN for an unknown elevation.
+    located : Located
+        Points of all features, one after the other; NaN for an unknown elevation.
     places : (n, 3) float64 array
         Their longitudes, latitudes and elevations.
-    system : (CRS, Unit or None)
-        CRS and unit of elevations of the points.
     """
-    crs, unit = system
+    points, crs, unit = located
 
     def between(here: Int64Array, there: Int64Array, share: Float64Array) -> Float64Array:
         ways = points[here] + share[:, None] * (points[there] - points[here])
@@ -279,8 +285,9 @@ def write_features(
     the member ``units`` names (``"unknown"`` if they are not known); exterior rings run
     counter-clockwise.
     """
-    places = (keep_in_crs if projected else project_to_wgs84)(*_locate(features))
-    texts, pieces = _format_features(features, places)
+    located = _locate(features)
+    places = (keep_in_crs if projected else project_to_wgs84)(*located)
+    texts, pieces = _format_features(features, places, located)
     members: list[tuple[str, Any]] = list(places.members) if features.has_elevations else []
     if features.units:
         members.append(("units", {k: unit_text(features.units, k) for k in features.units}))
@@ -310,7 +317,8 @@ def write_feature_lines(
         Of a TIN; default triangles.
     """
     features = make_features(surface, kind)
-    texts, _ = _format_features(features, project_to_wgs84(*_locate(features)))
+    located = _locate(features)
+    texts, _ = _format_features(features, project_to_wgs84(*located), located)
     with replacing(path, binary=False) as file:
         for done, written in texts.iterate():
             file.writelines(f"{line}\n" for line in written)
@@ -318,7 +326,7 @@ def write_feature_lines(
                 progress(done)
 
 
-def _locate(features: Features) -> tuple[Float64Array, CRS | None, Unit | None]:
+def _locate(features: Features) -> Located:
     """Return coordinates with elevations; 0 stands for those that are not known or not there."""
     points = np.zeros((len(features.coordinates), 3))
     points[:, : features.coordinates.shape[1]] = features.coordinates
@@ -326,17 +334,19 @@ def _locate(features: Features) -> tuple[Float64Array, CRS | None, Unit | None]:
     crs = features.crs
     if crs is not None and not features.has_elevations:
         crs = crs.horizontal
-    return points, crs, features.elevation_unit
+    return Located(points, crs, features.elevation_unit)
 
 
-def _format_features(features: Features, places: Places) -> tuple[Texts, Pieces | None]:
+def _format_features(
+    features: Features, places: Places, located: Located
+) -> tuple[Texts, Pieces | None]:
     """Return features as texts; a position of unknown elevation has two numbers."""
-    points, crs, unit = _locate(features)
     xyz, levels, pieces = places.xyz.copy(), features.offsets, None
     is_unknown = np.isnan(features.coordinates[:, 2]) if features.has_elevations else slice(None)
-    xyz[is_unknown, 2] = points[is_unknown, 2] = np.nan
+    xyz[is_unknown, 2] = np.nan
     if places.crs_member is None:
-        pieces = cut_places(features.kind, levels, points, xyz, (crs, unit))
+        located.points[is_unknown, 2] = np.nan
+        pieces = cut_places(features.kind, levels, located, xyz)
         xyz, levels = pieces.xyz, pieces.levels
     vertices = np.arange(len(xyz))
     if features.kind == "polygons" and pieces is not None:

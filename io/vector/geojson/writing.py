@@ -15,6 +15,7 @@ from ....tin import Survey
 from ..surface_features import choose_kind, list_parts
 from .antimeridian import HALF_TURN
 from .features import (
+    Located,
     Texts,
     cut_places,
     find_box,
@@ -128,13 +129,8 @@ def write(
         vertices = parts.vertices
         used = used[np.unique(vertices if chosen == "lines" else surface.triangles)]
         if spans is not None and np.ptp(used[:, 0]) > HALF_TURN:
-            pieces = cut_places(
-                parts.kind,
-                parts.offsets,
-                surface.points[vertices],
-                places.xyz[vertices],
-                (surface.crs, surface.elevation_unit),
-            )
+            located = Located(surface.points[vertices], surface.crs, surface.elevation_unit)
+            pieces = cut_places(parts.kind, parts.offsets, located, places.xyz[vertices])
             spans = pieces.spans
         texts = _format_parts(chosen, parts, places, pieces)
     members = [] if places.crs_member is None else [("crs", places.crs_member)]
@@ -156,17 +152,15 @@ def _format_parts(kind: str, parts: Parts, places: Places, pieces: Pieces | None
     elif kind == "lines" and len(columns) == 1:
         unknown = np.full(len(columns["id"]), None, object)
         columns |= {"kind": unknown, "name": np.full(len(unknown), ""), "source": unknown}
-    if (
-        kind == "triangles" and places.crs_member is None and pieces is None
-    ):  # else the order is the TIN's own
+    if kind == "hull" or (kind == "triangles" and pieces is not None):
+        vertices = turn_rings(vertices, levels, xyz)
+    elif kind == "triangles" and places.crs_member is None:  # else the order is the TIN's own
         triangles = vertices.reshape(-1, 4)[:, :3]
         a, b, c = (places.xyz[triangles[:, k], :2] for k in range(3))
         ab, ac = b - a, c - a
         clockwise = ab[:, 0] * ac[:, 1] < ab[:, 1] * ac[:, 0]
         triangles = np.where(clockwise[:, None], triangles[:, ::-1], triangles)
         vertices = triangles[:, [0, 1, 2, 0]].ravel()
-    elif kind == "hull" or (kind == "triangles" and pieces is not None):
-        vertices = turn_rings(vertices, levels, xyz)
     form = ",".join(f'"{name}":{forms.get(name, "%s")}' for name in columns)
 
     def format_properties(part: slice) -> Iterable[str]:

@@ -45,10 +45,10 @@ def sheet_options(names: str) -> Decorator:
 
 def name_title_block(path: Path | None) -> list[Named]:
     """Return the file of a title block and that of its logo, for the list of inputs."""
-    from ...terrain.plans import find_logo
-
     if path is None:
         return []
+    from ...terrain.plans import find_logo
+
     logo = find_logo(path)
     named = [Named(path, "the file of --title-block")]
     return named if logo is None else [*named, Named(logo, "the logo of --title-block")]
