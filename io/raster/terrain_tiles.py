@@ -177,11 +177,13 @@ def _choose_band(raster: Raster, band: str | None) -> tuple[CRS, str, float, lis
             "length."
         )
     assumed = assume_elevation_unit(raster.crs, unit)
-    if unit is not None or assumed is None:
-        return raster.crs, name, (assumed and assumed.metres) or 1.0, []
-    text = "The unit of elevations is not known, and taken to be that which is usual in"
-    note = f"{text} {raster.crs.label}, the {assumed.name}."
-    return raster.crs, name, assumed.metres or 1.0, [note]
+    metres, notes = (assumed and assumed.metres) or 1.0, []
+    if unit is None and assumed is not None:
+        text = "The unit of elevations is not known, and taken to be that which is usual in"
+        notes.append(f"{text} {raster.crs.label}, the {assumed.name}.")
+    if assumed is not None and metres != 1.0:
+        notes.append(f"Elevations were converted from {assumed.name} to metre.")
+    return raster.crs, name, metres, notes
 
 
 def _encode(values: Float64Array, code: _Code, fill: float | None) -> bytes:

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from numbers import Real
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from ...base.checks import as_number, is_finite_number, require_count
+from ...base.checks import as_number, require_count
 from ...base.errors import OptionError
 from ...base.georeference import find_axes
 from ..surface import as_places
@@ -62,7 +63,7 @@ class Marking(NamedTuple):
         require_count("decimals", decimals, least=0, most=9, or_none=True)
         chosen: Any = spots
         notes: tuple[str, ...] = ()
-        if is_finite_number(spots):
+        if isinstance(spots, Real):
             chosen = as_number("spots", spots, "a spacing", above=0.0)
         elif isinstance(spots, str):
             if spots != PEAKS:

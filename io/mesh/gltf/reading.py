@@ -33,6 +33,11 @@ _TRIANGLES = 4
 _SURFACES = (4, 5, 6)
 """Modes of primitives: triangles, strips, fans; others are points and lines."""
 
+_FOREIGN = (
+    "X was taken for the easting, -Z for the northing and Y for the elevation, the numbers as they "
+    "are: glTF counts metres, and does not tell where north is."
+)
+
 _GEOCENTRIC, _ELLIPSOIDAL, _FLAT = "EPSG:4978", "EPSG:4979", "OGC:CRS84"
 
 
@@ -84,13 +89,14 @@ def read(path: Path) -> Mesh:
     """Read the triangles of a GLB file, at their places on the map where it tells these.
 
     CRS and unit default to those in ``extras`` of a file that this package wrote. Of other files
-    the coordinates are metres: X is east, Y up and -Z north. Corners at one place are one vertex;
-    normals, colours, textures, points and lines are skipped.
+    the coordinates are metres: X is east, Y up and -Z north, which a note tells. Corners at one
+    place are one vertex; normals, colours, textures, points and lines are skipped.
     """
     file = _open(read_content(path))
     points: list[Float64Array] = []
     triangles: list[Int64Array] = []
     count, skipped, rounding = 0, 0, 0.0
+    notes: list[str] = []
     told: dict[str, Any] = {}
     for node, matrix in _list_nodes(file):
         primitives = file.get("meshes", node["mesh"]).get("primitives")
@@ -108,6 +114,7 @@ def read(path: Path) -> Mesh:
                 placed, unit = _restore(local, matrix, own)
                 rounding = max(rounding, step * unit)
             else:
+                notes = [_FOREIGN]
                 placed = local @ matrix[:3, :3].T + matrix[:3, 3]
                 placed = np.column_stack([placed[:, 0], -placed[:, 2], placed[:, 1]])
             points.append(placed)
@@ -117,14 +124,16 @@ def read(path: Path) -> Mesh:
         raise ReadError(f"{FILE} holds no triangles.")
     places, numbers = join_places(np.concatenate(points))
     corners = numbers[np.concatenate(triangles)]
-    parts = counted(skipped, "part of points or lines", "parts of points or lines")
+    if skipped:
+        parts = counted(skipped, "part of points or lines", "parts of points or lines")
+        notes = [*notes, f"Not read: {parts}."]
     return Mesh(
         places,
         corners.ravel(),
         np.arange(0, corners.size + 1, 3),
         crs=_take_text(told, "crs"),
         elevation_unit=_take_text(told, "elevationUnit"),
-        notes=[f"Not read: {parts}."] if skipped else [],
+        notes=notes,
         rounding=rounding,
     )
 

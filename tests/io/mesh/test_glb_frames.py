@@ -118,6 +118,7 @@ def test_scenes_of_other_programs(tmp_path):
     assert found.bounds.ymax == pytest.approx(wanted[:, 1].max(), abs=1e-5)
     assert found.surface_area == pytest.approx(whole.area, rel=1e-5)
     assert str(found.crs) == "EPSG:32616"
+    assert any("does not tell where north is" in note for note in found.report.notes)
 
 
 @pytest.mark.parametrize("mode", [5, 6])

@@ -149,7 +149,8 @@ def test_gaps_show_the_lowest_elevation_or_nothing(tmp_path):
 def test_feet_become_metres_and_unknown_units_are_told(tmp_path):
     foot = 1200 / 3937
     raster = make(crs="EPSG:2274", unit=ts.Unit.of("US survey foot"), west=1.7e6, south=6e5)
-    about, tiles = read_archive(ts.write(raster, tmp_path / "a.mbtiles"))
+    with pytest.warns(ts.LossWarning, match="were converted from US survey foot to metre"):
+        about, tiles = read_archive(ts.write(raster, tmp_path / "a.mbtiles"))
     values = np.asarray(raster.bands["elevation"]) * foot
     for place, content in finest(about, tiles).items():
         wanted = interpolate(values, raster.grid, *locate(place, "EPSG:2274"))

@@ -190,6 +190,7 @@ def test_sheets_of_a_drawing_lie_side_by_side(tmp_path):
         ({"decimals": 1.5}, "Invalid decimals 1.5"),
         ({"spots": 0}, "Invalid spots 0: it must be a spacing > 0."),
         ({"spots": -3.0}, "Invalid spots -3.0"),
+        ({"spots": float("nan")}, "Invalid spots nan: it must be a spacing > 0."),
         ({"spots": "summits"}, "Invalid spots 'summits': it must be a spacing, 'peaks', or points"),
         ({"spots": 1e-3}, "so large that there are at most 100,000 spot heights."),
         ({"spots": 1e-320}, "at most 100,000 spot heights"),
