@@ -50,8 +50,7 @@ def can_draw():
 def pytest_collection_modifyitems(config, items):
     each_value.mark_other_cases(items)
     durations.mark_long_tests(items, durations.read_durations())
-    left_out = [name for name in ("proof", "slow") if name not in config.option.markexpr]
-    left = {item for name in left_out for item in items if item.get_closest_marker(name)}
+    left = {item for item in items if durations.is_left_out(item, config.option.markexpr)}
     config.hook.pytest_deselected(items=[item for item in items if item in left])
     items[:] = [item for item in items if item not in left]
 

@@ -166,6 +166,7 @@ def run_pyright(folder, files):
     ).stdout
 
 
+@pytest.mark.every_case("slow")
 @pytest.mark.slow
 @pytest.mark.parametrize("run_checker", [run_mypy, run_pyright])
 def test_type_checkers_take_users_programs_and_refuse_names_that_are_not_there(

@@ -13,14 +13,39 @@ ROOT = durations.LISTED.parents[1]
 
 @pytest.mark.parametrize("number", range(5))
 @pytest.mark.parametrize(
-    ("seconds", "kept"), [(0.05, 5), (0.1, 4), (0.13, 3), (0.4, 1), (0.41, 0), (60, 0)]
+    ("seconds", "commands"),
+    [
+        (0.05, "ttttt"),
+        (0.1, "tttts"),
+        (0.13, "tttss"),
+        (0.4, "tssss"),
+        (0.41, "sssss"),
+        (1.5, "ssspp"),
+        (60, "spppp"),
+    ],
 )
-def test_cases_beyond_the_budget_are_slow(number, seconds, kept, request):
+def test_cases_beyond_a_budget_are_left_to_the_next_command(number, seconds, commands, request):
     name = durations.name_test(request.node.nodeid)
     cases = [case for case in request.node.parent.collect() if case.nodeid.startswith(name)][:5]
     durations.mark_long_tests(cases, {name: seconds})
-    slow = [case.get_closest_marker("slow") is not None for case in cases]
-    assert slow == [False] * kept + [True] * (5 - kept)
+    found = {"t": "", "s": "slow", "p": "proof"}
+    for case, command in zip(cases, commands, strict=True):
+        by = [one for one, expression in found.items() if not is_left(case, expression)]
+        assert by == [command], case.nodeid
+
+
+def is_left(case, expression):
+    """Whether a command does not run a case: left out, or not chosen by its expression."""
+    chosen = not expression or case.get_closest_marker(expression) is not None
+    return durations.is_left_out(case, expression) or not chosen
+
+
+def test_a_test_whose_cases_must_all_run_has_no_proofs(request):
+    [case] = [one for one in request.node.parent.collect() if one.nodeid == request.node.nodeid]
+    case.add_marker(pytest.mark.every_case("slow"))
+    durations.mark_long_tests([case] * 3, {case.nodeid: 60.0})
+    assert case.get_closest_marker("slow") is not None
+    assert case.get_closest_marker("proof") is None
 
 
 def test_what_is_not_listed_runs_and_what_is_marked_runs_too(request):

@@ -80,6 +80,7 @@ def test_a_find_that_is_mended_replays_as_sound(tmp_path):
     assert (done.returncode, done.stdout) == (0, "small\n")
 
 
+@pytest.mark.every_case("slow")
 @pytest.mark.parametrize(
     ("name", "kind", "where"),
     [

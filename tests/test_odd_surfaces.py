@@ -50,6 +50,7 @@ def odd(request):
     return SURFACES[request.param]()
 
 
+@pytest.mark.every_case("slow")
 @pytest.mark.each_value(others="slow")
 @pytest.mark.parametrize("name", ALL)
 def test_products_return_or_refuse(odd, name):

@@ -178,6 +178,7 @@ def run_line(command):
     return done.exit_code, done.output
 
 
+@pytest.mark.every_case("slow")
 @pytest.mark.slow
 @LOSSES
 @pytest.mark.parametrize("page", [*filter(list_commands, PAGES)], ids=name_page)
@@ -192,6 +193,7 @@ def test_commands_of_the_pages_run(page, folder, can_draw):
         assert all(split_output(folder / name)[0].exists() for name in outputs), command
 
 
+@pytest.mark.every_case("slow")
 @pytest.mark.slow
 @LOSSES
 @pytest.mark.parametrize("page", [*filter(list_sessions, PAGES)], ids=name_page)

@@ -148,6 +148,7 @@ def list_outputs(notebook):
     return found
 
 
+@pytest.mark.every_case("slow")
 @pytest.mark.slow
 @pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
 def test_notebooks_run_and_say_what_they_show(path, monkeypatch):

@@ -11,6 +11,7 @@ from benchmarks.report.page import write_report
 from benchmarks.sections import products
 
 
+@pytest.mark.every_case("slow")
 @pytest.mark.slow
 @pytest.mark.parametrize("name", PRODUCTS)
 def test_every_product_is_right(name):

@@ -55,6 +55,7 @@ def examples():
     return found
 
 
+@pytest.mark.every_case("slow")
 @pytest.mark.slow
 @pytest.mark.parametrize("line", examples())
 def test_example_of_the_help_runs_as_written(line, folder, request, monkeypatch):

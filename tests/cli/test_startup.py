@@ -48,6 +48,7 @@ def test_help_of_a_command_loads_no_library(tmp_path):
     assert not modules_after(tmp_path, "build", "--help") & set(HEAVY.split())
 
 
+@pytest.mark.every_case("slow")
 @pytest.mark.parametrize(
     "job",
     [

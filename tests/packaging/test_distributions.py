@@ -120,6 +120,7 @@ def test_the_three_main_jobs_work_without_a_compiler(machine, tmp_path):
     require_success(call(program, "check", "site.ply", cwd=tmp_path))
 
 
+@pytest.mark.every_case("slow")
 @pytest.mark.parametrize(
     ("brought", "job", "missing"),
     [

@@ -119,6 +119,7 @@ sys.exit(main(sys.argv[1:]))
 """
 
 
+@pytest.mark.every_case("slow")
 @pytest.mark.slow
 @pytest.mark.parametrize("workers", [1, 2])
 def test_files_that_become_too_large_are_told_and_the_run_goes_on(lidar, tmp_path, workers):

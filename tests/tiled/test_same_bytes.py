@@ -125,6 +125,7 @@ def fuzz(*arguments):
     return done.stdout
 
 
+@pytest.mark.every_case("slow")
 @pytest.mark.slow
 @pytest.mark.parametrize(
     "more",

@@ -106,6 +106,7 @@ def test_a_crash_is_a_sentence(name):
     assert "crashed" in text or "damaged" in text
 
 
+@pytest.mark.every_case("slow")
 @pytest.mark.parametrize("name", ["spin", pytest.param("wait", marks=pytest.mark.slow)])
 def test_a_hang_ends_at_the_limit(name):
     start = time.monotonic()

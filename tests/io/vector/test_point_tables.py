@@ -148,6 +148,7 @@ def test_commands_take_tables_and_say_so(folder, job):
     assert "in the order of its rows" in done.output
 
 
+@pytest.mark.every_case("slow")
 @pytest.mark.parametrize("job", [name for name in JOBS if name not in ("corridor", "breaklines")])
 def test_a_table_gives_what_a_vector_file_gives(folder, job):
     assert run(*JOBS[job].split()).exit_code == 0

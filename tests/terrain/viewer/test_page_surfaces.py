@@ -192,6 +192,7 @@ def test_a_line_beyond_the_surface_and_a_polygon_that_crosses_itself(tmp_path):
         assert words == "Area 1600.000, perimeter 160.000"
 
 
+@pytest.mark.every_case("slow")
 @pytest.mark.parametrize(
     "name",
     ["</script><b>x", "x" * 10_000, "\u202e\u05d0\u05d1\u05d2 right to left", "\U0001f3d4 \u26cf"],
