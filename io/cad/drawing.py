@@ -17,7 +17,7 @@ from ...tin import Breakline, Surface, Survey, Water
 from ...tin.constraints import as_ring, as_sequence, gather_rings_of_regions
 from ...tin.screening import describe_elevations
 from ...tin.topology import find_offsets
-from ..mesh import Reference, require_own_crs
+from ..mesh import FileReference, require_own_crs
 from ..reprojection import Placed, place
 from .surfaces import Line, Mesh, make_tin_with_lines, merge_equal_points
 
@@ -66,7 +66,7 @@ class Drawing:
         return make_tin_with_lines(
             mesh._replace(notes=[*measures.notes, *mesh.notes, *self.notes]),
             [one._replace(coordinates=measures.apply(one.coordinates)) for one in self.lines],
-            reference=Reference(measures.source, measures.elevation_unit, self.is_crs_declared),
+            reference=FileReference(measures.source, measures.elevation_unit, self.is_crs_declared),
             faces=faces,
         )
 

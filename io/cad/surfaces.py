@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
     from ...base.arrays import BoolArray, Float64Array, Int64Array
     from ...base.policies import FacePolicy
-    from ..mesh import Reference
+    from ..mesh import FileReference
 
 _KINDS = get_args(LineKind)
 _SAME_PLACE = 1e-6
@@ -76,7 +76,7 @@ def merge_equal_points(mesh: Mesh) -> Mesh:
 
 
 def make_tin_with_lines(
-    mesh: Mesh, lines: Sequence[Line], *, reference: Reference, faces: FacePolicy
+    mesh: Mesh, lines: Sequence[Line], *, reference: FileReference, faces: FacePolicy
 ) -> TIN:
     """Make a TIN as every mesh does; lines that run along its edges become its lines."""
     tin = make_tin(

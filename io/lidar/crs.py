@@ -45,7 +45,7 @@ _IN_FEET = {(5703, US_SURVEY_FOOT): 6360, (5703, FOOT): 8228}
 """NAVD 88 in metres, as files name it whose elevations are in feet, and what they mean."""
 
 
-class Reference(NamedTuple):
+class HeaderReference(NamedTuple):
     """What the coordinates of a file are measured in."""
 
     crs: CRS | None = None
@@ -55,7 +55,7 @@ class Reference(NamedTuple):
     notes: tuple[str, ...] = ()
 
 
-def find_reference(header: Header, *, is_declared: bool) -> Reference:
+def find_reference(header: Header, *, is_declared: bool) -> HeaderReference:
     """Return what the variable-length records of a file say of its coordinates.
 
     Parameters
@@ -85,29 +85,29 @@ def find_reference(header: Header, *, is_declared: bool) -> Reference:
             raise _advise(header, error) from error
         reason = str(error).removeprefix(f"'{header.path}': ")
         note = f"'{header.path.name}' names a CRS that was not used: {reason}"
-        return Reference(notes=(note,))
+        return HeaderReference(notes=(note,))
 
 
-def _find_reference(header: Header) -> Reference:
+def _find_reference(header: Header) -> HeaderReference:
     keys = _read_keys(header)
     every = [CRS.of(text) for text in _read_texts(header)]
     named = [crs for crs in every if not _is_unnamed(crs)]
     if every and not named and keys is None:
-        return Reference(notes=(_describe_unnamed(every[0].horizontal_unit),))
+        return HeaderReference(notes=(_describe_unnamed(every[0].horizontal_unit),))
     if not named:
-        return Reference() if keys is None else _interpret_keys(header, keys)
+        return HeaderReference() if keys is None else _interpret_keys(header, keys)
     for other in (*named[1:], *_find_plain_code(keys or {})):
         _require_agreement(named[0], other, header)
     vertical, unit = named[0].vertical_unit, _UNITS.get((keys or {}).get(_VERTICAL_UNIT_KEY, 0))
     if vertical is None or unit is None:
-        return Reference(named[0], unit)
+        return HeaderReference(named[0], unit)
     if abs(unit.metres / vertical.metres - 1.0) > _SAME_UNIT:  # type: ignore[operator]
         raise ReadError(
             f"'{header.path}' has elevations in {vertical.name} by its WKT and in {unit.name} by "
             "its keys of GeoTIFF: declare the CRS that is right.",
             path=header.path,
         )
-    return Reference(named[0])
+    return HeaderReference(named[0])
 
 
 def _read_texts(header: Header) -> list[str]:
@@ -181,17 +181,17 @@ def _list_keys(header: Header) -> list[tuple[int, int, int, int]]:
     return sorted(row for row in rows if row[0])
 
 
-def _interpret_keys(header: Header, keys: dict[int, int]) -> Reference:
+def _interpret_keys(header: Header, keys: dict[int, int]) -> HeaderReference:
     code = keys.get(_PROJECTED_KEY) or keys.get(_GEOGRAPHIC_KEY)
     vertical = keys.get(_VERTICAL_KEY, 0)
     if code == _USER_DEFINED or (code is None and vertical == _USER_DEFINED):
         crs, unit = CRS.of(_ask_gdal(header)), _UNITS.get(keys.get(_VERTICAL_UNIT_KEY, 0))
         if not _is_unnamed(crs):
-            return Reference(crs, unit)
+            return HeaderReference(crs, unit)
         linear = _UNITS.get(keys.get(_LINEAR_UNIT_KEY, 0))
-        return Reference(unit=unit, notes=(_describe_unnamed(linear),))
+        return HeaderReference(unit=unit, notes=(_describe_unnamed(linear),))
     if code is None or code == 0:
-        return Reference(unit=_UNITS.get(keys.get(_VERTICAL_UNIT_KEY, 0)))
+        return HeaderReference(unit=_UNITS.get(keys.get(_VERTICAL_UNIT_KEY, 0)))
     horizontal = CRS.of(f"EPSG:{code}")
     _require_unit(horizontal, _UNITS.get(keys.get(_LINEAR_UNIT_KEY, 0)), header.path)
     return _add_vertical(horizontal, vertical, _UNITS.get(keys.get(_VERTICAL_UNIT_KEY, 0)))
@@ -220,23 +220,23 @@ def _require_unit(crs: CRS, unit: Unit | None, path: Path) -> None:
         )
 
 
-def _add_vertical(horizontal: CRS, code: int, unit: Unit | None) -> Reference:
+def _add_vertical(horizontal: CRS, code: int, unit: Unit | None) -> HeaderReference:
     """Add the vertical part that a key names, where the unit that is named fits it."""
     code = code if unit is None else _IN_FEET.get((code, unit), code)
     if code in (0, _USER_DEFINED):
-        return Reference(horizontal, unit)
+        return HeaderReference(horizontal, unit)
     try:
         crs = CRS.of(f"{horizontal}+{code}")
     except CrsError:
         note = f"The vertical CRS of the file, number {code}, is not known: it was left aside."
-        return Reference(horizontal, unit, (note,))
+        return HeaderReference(horizontal, unit, (note,))
     if unit is None or crs.vertical_unit == unit:
-        return Reference(crs)
+        return HeaderReference(crs)
     note = (
         f"The elevations of the file are said to be in {unit}, and its vertical CRS, number "
         f"{code}, is in another unit: only the unit was taken."
     )
-    return Reference(horizontal, unit, (note,))
+    return HeaderReference(horizontal, unit, (note,))
 
 
 def _ask_gdal(header: Header) -> str:

@@ -23,7 +23,7 @@ from ..registry import (
     taking,
 )
 from ..reprojection import Placing, find_conversion_factor, place, settle_unit
-from .crs import Reference, find_reference
+from .crs import HeaderReference, find_reference
 from .header import Header, parse_header
 from .selection import N_CLASSES, Asked, Selection, Tally, count_points
 from .signatures import SUFFIXES, is_virtual_cloud, list_named_files, list_tiles
@@ -170,7 +170,7 @@ class Tile:
     """A file, with what its coordinates are measured in."""
 
     header: Header
-    reference: Reference
+    reference: HeaderReference
     unit: Unit | None
 
 

@@ -1,5 +1,5 @@
 # Names that other packages use, each with the module that has it.
-from .common import Reference as Reference
+from .common import FileReference as FileReference
 from .common import add_notes as add_notes
 from .common import cut_into_fans as cut_into_fans
 from .common import join_places as join_places

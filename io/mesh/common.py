@@ -80,7 +80,7 @@ def format_crs(crs: CRS) -> str:
     return " ".join(part.strip() for part in str(crs).splitlines())
 
 
-class Reference(NamedTuple):
+class FileReference(NamedTuple):
     """What the coordinates of a file are measured in; None for what is not known."""
 
     crs: CRS | None
@@ -95,7 +95,7 @@ def choose_reference(
     *,
     found_crs: str | None = None,
     found_unit: str | None = None,
-) -> Reference:
+) -> FileReference:
     """Return CRS and unit of elevations: what the file says, else what the caller declares.
 
     Raises
@@ -116,7 +116,7 @@ def choose_reference(
         raise ReadError(f"'{found_unit}' is no unit of elevations.") from None
     vertical = None if system is None else system.vertical_unit
     unit = settle_unit(Unit.of(elevation_unit), known or vertical)
-    return Reference(system, unit, is_declared=own is None and system is not None)
+    return FileReference(system, unit, is_declared=own is None and system is not None)
 
 
 def require_own_crs(own: CRS | None, declared: CRS | None) -> None:
@@ -197,7 +197,9 @@ def mesh_reader(parse: Callable[..., Mesh]) -> Callable[..., TIN | Survey]:
     return read
 
 
-def build_mesh(mesh: Mesh, source: str, *, reference: Reference, faces: FacePolicy) -> TIN | Survey:
+def build_mesh(
+    mesh: Mesh, source: str, *, reference: FileReference, faces: FacePolicy
+) -> TIN | Survey:
     """Make a TIN of what a file holds, or a survey of a file without polygons."""
     points, attributes = mesh.points, dict(mesh.attributes)
     if len(mesh.offsets) == 1:
@@ -228,7 +230,7 @@ def make_tin(
     triangles: AnyArray,
     *,
     constrained: BoolArray | None = None,
-    reference: Reference,
+    reference: FileReference,
     attributes: Mapping[str, AnyArray] | None = None,
     notes: Sequence[str] = (),
     faces: FacePolicy = "most",
@@ -282,7 +284,7 @@ def make_tin(
     return add_notes(tin, noted) if noted else tin
 
 
-def _look_at_crs(points: Float64Array, reference: Reference) -> tuple[str, ...]:
+def _look_at_crs(points: Float64Array, reference: FileReference) -> tuple[str, ...]:
     return look_at_crs(points, reference.crs, is_declared=reference.is_declared)
 
 
@@ -331,7 +333,7 @@ def make_survey(
     source: str,
     *,
     attributes: dict[str, AnyArray] | None = None,
-    reference: Reference,
+    reference: FileReference,
     notes: Sequence[str] = (),
 ) -> Survey:
     """Make a survey of the points of a file."""

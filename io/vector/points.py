@@ -18,7 +18,7 @@ from ...base.sentences import FILE, counted
 from ...tin import TIN, Breakline, Survey
 from ...tin.screening import describe_elevations, parse_nodata
 from ...tin.topology import find_offsets
-from ..mesh import Reference, join_places, make_tin
+from ..mesh import FileReference, join_places, make_tin
 from ..registry import taking
 from ..reprojection import place, settle_unit
 from .elevations import find_elevation_unit, find_elevations
@@ -318,7 +318,7 @@ def _make_triangles(features: Layer, asked: Asked) -> TIN:
     tin = make_tin(
         placed.points,
         triangles,
-        reference=Reference(placed.crs, placed.elevation_unit),
+        reference=FileReference(placed.crs, placed.elevation_unit),
         faces=asked.faces,
         looks_at_crs=False,
     )

@@ -32,7 +32,7 @@ _AIR = 2.0
 """Millimetres between a surface and the frame."""
 
 
-class Ground(NamedTuple):
+class ShownArea(NamedTuple):
     """What is to be shown."""
 
     bounds: Bounds
@@ -42,7 +42,7 @@ class Ground(NamedTuple):
 
 
 def choose_single(
-    ground: Ground, layouts: Sequence[Layout], scale: Scale | None, *, air: float = _AIR
+    ground: ShownArea, layouts: Sequence[Layout], scale: Scale | None, *, air: float = _AIR
 ) -> tuple[Layout, Scale, Window]:
     """Return the window that shows all of the ground, north up.
 
@@ -80,7 +80,7 @@ def _fits(bounds: Bounds, layout: Layout, length: float, air: float) -> bool:
 
 
 def _describe_too_large(
-    ground: Ground, layout: Layout, scale: Scale, largest: Scale
+    ground: ShownArea, layout: Layout, scale: Scale, largest: Scale
 ) -> OptionError:
     length = scale.measure_unit(ground.unit)
     across, up = ground.bounds.width * length, ground.bounds.height * length
@@ -97,7 +97,7 @@ def _describe_too_large(
 # ---------------------------------------------------------------- rows
 
 
-def cut_rows(ground: Ground, layout: Layout, scale: Scale) -> list[Window]:
+def cut_rows(ground: ShownArea, layout: Layout, scale: Scale) -> list[Window]:
     """Return windows in rows from north to south, each from west to east, where there is ground.
 
     Raises OptionError if there would be too many.
@@ -178,7 +178,7 @@ def require_few(n_sheets: float, scale: Scale, layout: Layout) -> None:
 
 
 def cut_strip_windows(
-    ground: Ground, layout: Layout, scale: Scale, axis: Float64Array | None
+    ground: ShownArea, layout: Layout, scale: Scale, axis: Float64Array | None
 ) -> list[Window]:
     """Return windows one after the other along an axis, the way on to the right of each.
 
@@ -213,7 +213,7 @@ def _reach(window: Window, joint: Any) -> Float64Array:
 
 
 def _describe_too_wide(
-    ground: Ground, layout: Layout, given: Scale, axis: Float64Array | None
+    ground: ShownArea, layout: Layout, given: Scale, axis: Float64Array | None
 ) -> str:
     """Say at which smaller scale strips would be wide enough."""
     of = f"strips of {layout.paper.name} along {'its own' if axis is None else 'the given'} axis"

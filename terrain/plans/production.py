@@ -17,7 +17,7 @@ from ...base.products import product
 from ...base.sentences import counted
 from ...tin import Bounds, Survey
 from ..drawing import UNTITLED, draw_north_up
-from .arrangement import Ground, choose_single, cut_rows, cut_strip_windows
+from .arrangement import ShownArea, choose_single, cut_rows, cut_strip_windows
 from .contents import describe_count, gather_contents
 from .footprint import find_footprint
 from .index_sheet import draw_index
@@ -342,7 +342,7 @@ def plan(
     if len(tin.triangles) == 0:
         raise PointsError("The TIN has no triangle: there is nothing to draw.")
     footprint = find_footprint(tin)
-    ground = Ground(Bounds.of(shapely.get_coordinates(footprint.faces)), footprint, unit)
+    ground = ShownArea(Bounds.of(shapely.get_coordinates(footprint.faces)), footprint, unit)
     factor = measure_scale_factor(tin.crs, *undo_north_up(ground.bounds.center, tin.crs))
     chosen = None if scale is None else Scale.of(scale, ground.unit)
     contents = gather_contents(
@@ -363,7 +363,7 @@ def plan(
 
 
 def _arrange(
-    ground: Ground,
+    ground: ShownArea,
     layouts: Sequence[Layout],
     scale: Scale | None,
     layout: str,

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from ....base.arrays import BoolArray, Float64Array, Int32Array
     from ....base.crs import CrsLike, UnitLike
     from ...isolated import Answer
-    from ..common import Reference
+    from ..common import FileReference
 
 _CHANGED = (
     "Layers of the file were changed by another program since it was written: the TIN is made of "
@@ -122,7 +122,7 @@ def _load_json(answer: Answer, name: str) -> dict[str, Any]:
     return found
 
 
-def _declare(record: Record, reference: Reference) -> Record:
+def _declare(record: Record, reference: FileReference) -> Record:
     """Return the record with the reference that the file or else a caller names."""
     crs, unit = reference.crs, reference.elevation_unit
     named = {

@@ -12,7 +12,7 @@ from ....base.georeference import label_axes, undo_north_up
 from ....tin import Bounds
 from ...drawing import draw_north_up
 from ...sections import cross_sections
-from ..arrangement import Ground, choose_single
+from ..arrangement import ShownArea, choose_single
 from ..footprint import Footprint, find_footprint
 from ..grid import draw_grid
 from ..mapping import OUTLINE_PEN
@@ -74,7 +74,7 @@ def make_map(difference: Difference, layouts: Sequence[Layout], unit: Unit) -> M
     shown = draw_north_up(difference.tin)
     footprint = find_footprint(shown)
     bounds = Bounds.of(shown.points[np.unique(shown.triangles)][:, :2])
-    ground = Ground(bounds, footprint, unit)
+    ground = ShownArea(bounds, footprint, unit)
     layout, scale, window = choose_single(ground, layouts, None)
     corners = shown.points[shown.triangles]
     place = corners[np.argmax(np.abs(corners[:, :, 2].mean(axis=1)))].mean(axis=0)[:2]

@@ -21,8 +21,8 @@ from ...earthwork.grading import (
 )
 from .designs import Lay
 from .rays import Reach, lay_rays
-from .sheets import Rows, Sheet, build_sheet
 from .stations import choose_stations
+from .surfaces import CorridorSurface, Rows, build_surface
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from .axis import Axis
     from .designs import Design
     from .rays import Rays
-    from .sheets import Fold
+    from .surfaces import Fold
 
 _SIGNS = {"cut": 1.0, "fill": -1.0}
 _SAMPLES = 65
@@ -46,8 +46,8 @@ _TOGETHER = 0.01
 class Layout(NamedTuple):
     """A corridor that has met the ground."""
 
-    bed: Sheet
-    skirts: list[Sheet]
+    bed: CorridorSurface
+    skirts: list[CorridorSurface]
     slopes: list[Slope]
     """Of each skirt that covers something."""
     ends: list[Float64Array]
@@ -203,7 +203,7 @@ class Layouts:
             found.append(np.array(places))
         return found
 
-    def _build_bed(self, rays: Rays) -> Sheet:
+    def _build_bed(self, rays: Rays) -> CorridorSurface:
         """Return what lies between the outermost parts."""
         axis = self._road.elevations_at(rays.stations)
         lays = {side: self._design.lay(side, rays.stations) for side in (-1, 1)}
@@ -212,7 +212,7 @@ class Layouts:
         names[1][0] = "axis"
         import shapely
 
-        bed = build_sheet(rays, Rows(names, lays), self._hold, self._road)
+        bed = build_surface(rays, Rows(names, lays), self._hold, self._road)
         path = shapely.linestrings(rays.origins[rays.sides == 1])
         if bed is None or bed.area.geom_type != "Polygon" or not shapely.is_simple(path):
             raise LinesError(
@@ -222,7 +222,9 @@ class Layouts:
         require_on_ground(self._area, bed.area, "The corridor lies off")
         return bed
 
-    def _build_skirt(self, rays: Rays, kind: str, reach: Reach, bed: Sheet) -> Sheet | None:
+    def _build_skirt(
+        self, rays: Rays, kind: str, reach: Reach, bed: CorridorSurface
+    ) -> CorridorSurface | None:
         """Return the side slopes of cuts or fills, whether or not they are made."""
         axis = self._road.elevations_at(rays.stations)
         names, lays = {}, {}
@@ -239,7 +241,7 @@ class Layouts:
             parts = self._design.list_names(side, ditch=True) if kind == "cut" else []
             names[side] = ["", *parts, ""]
         is_own = partial(self._hold, reach=reach)
-        return build_sheet(rays, Rows(names, lays), is_own, self._road, bed=bed)
+        return build_surface(rays, Rows(names, lays), is_own, self._road, bed=bed)
 
     def _hold(self, places: Float64Array, reach: Reach | None = None) -> BoolArray:
         """Whether places are those of the bed, or of side slopes as far as they may go."""
@@ -261,7 +263,7 @@ class Layouts:
 def _find_ranges(
     fold: Fold, are_made: Callable[[Float64Array], BoolArray]
 ) -> tuple[list[tuple[float, float]], float]:
-    """Return the stations at which a sheet was cut off, and by how much both sides differ."""
+    """Return the stations at which a surface was cut off, and by how much both sides differ."""
     shares = np.linspace(0.0, 1.0, _CHECKS)
     first, last = fold.places[:, :1], fold.places[:, 1:]
     places = first + shares[:, None] * (last - first)
@@ -277,7 +279,7 @@ def _find_ranges(
 
 
 def _describe_fold(ranges: list[tuple[float, float]], what: str, step: float, symbol: str) -> str:
-    """Say at which stations a sheet was cut off."""
+    """Say at which stations a surface was cut off."""
     joined = [
         f"{coordinate(math.floor(low * 1e3) / 1e3)} to {coordinate(math.ceil(high * 1e3) / 1e3)}"
         for low, high in ranges

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from ....base.arrays import Float64Array
     from .axis import Axis
     from .layouts import Layout
-    from .sheets import Sheet
+    from .surfaces import CorridorSurface
 
 _NEAR = 4.0
 """Of a face's width: shorter ends have none."""
@@ -26,11 +26,11 @@ _NEAR = 4.0
 class _Bed:
     """The bed of a corridor where :mod:`terrain.earthwork.grading` asks for a pad."""
 
-    def __init__(self, sheet: Sheet) -> None:
+    def __init__(self, surface: CorridorSurface) -> None:
         import shapely
 
-        self.polygon = shapely.orient_polygons(sheet.area)
-        self._known = {(x, y): z for x, y, z in sheet.tin.points.tolist()}
+        self.polygon = shapely.orient_polygons(surface.area)
+        self._known = {(x, y): z for x, y, z in surface.tin.points.tolist()}
         rings = [shapely.get_coordinates(one) for one in shapely.get_rings(self.polygon)]
         pairs = np.concatenate([np.stack([one[:-1], one[1:]], axis=1) for one in rings])
         heights = [self._known[x, y] for x, y in pairs.reshape(-1, 2).tolist()]

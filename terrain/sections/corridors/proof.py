@@ -37,8 +37,8 @@ def require_as_designed(
     middles = patch.points[patch.triangles].mean(axis=1)
     table = road.alignment.stations_of(middles[:, :2])
     station, offset = table["station"], table["offset"]
-    sheets = (layout.bed, *layout.skirts)
-    step = max(float(one.fold.steps.max(initial=0.0)) for one in sheets)
+    surfaces = (layout.bed, *layout.skirts)
+    step = max(float(one.fold.steps.max(initial=0.0)) for one in surfaces)
     low, high = road.span
     for side in (-1, 1):
         own = np.flatnonzero((station > low) & (station < high) & ((offset < 0.0) == (side < 0)))

@@ -1,4 +1,4 @@
-"""Sheets: the surfaces between the lines of a corridor, of its bed or of its side slopes."""
+"""The surfaces between the lines of a corridor, of its bed or of its side slopes."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ class Rows(NamedTuple):
 
 
 class Fold(NamedTuple):
-    """Edges along which a sheet was cut off at what is nearer to other stations."""
+    """Edges along which a surface was cut off at what is nearer to other stations."""
 
     stations: Float64Array
     """(n, 2), of the rays that end there."""
@@ -49,7 +49,7 @@ class Fold(NamedTuple):
     """(n,), by how much both stretches differ there at most, in the unit of elevations."""
 
 
-class Sheet(NamedTuple):
+class CorridorSurface(NamedTuple):
     """A surface, and what it is made of."""
 
     tin: TIN
@@ -62,14 +62,14 @@ class Sheet(NamedTuple):
     fold: Fold
 
 
-def build_sheet(
+def build_surface(
     rays: Rays,
     rows: Rows,
     is_own: Callable[[Float64Array], BoolArray],
     road: Axis,
     *,
-    bed: Sheet | None = None,
-) -> Sheet | None:
+    bed: CorridorSurface | None = None,
+) -> CorridorSurface | None:
     """Return the surface of lines, or None where it covers nothing.
 
     A bed lies on both sides of its first line, the axis, side slopes beyond the edge of a ``bed``,
@@ -112,7 +112,7 @@ def build_sheet(
     rings: dict[str, Any] = arrange_rings(area, heights)
     tin = triangulate(points[mesh.used], breaklines=breaks, **rings)
     outer = [points[list(pair)] for pair in mesh.list_outer(rays)]
-    return Sheet(tin, area, breaks, outer, mesh.find_fold(rays))
+    return CorridorSurface(tin, area, breaks, outer, mesh.find_fold(rays))
 
 
 class _Vertices:
@@ -207,7 +207,7 @@ class _Vertices:
         return found
 
     def _find_folds(self, rays: Rays) -> Int64Array:
-        """Return the rays that follow each other and between whose ends the sheet is cut off."""
+        """Return the rays that follow each other and between whose ends the surface is cut off."""
         first, second = rays.pairs.T
         lasts = np.array([self._find_last(ray) for ray in range(len(rays.sides))])
         outer = np.array([self._lasts[side] for side in rays.sides.tolist()])
@@ -271,7 +271,7 @@ class _Vertices:
 
 
 def _explain_open(rays: Rays, road: Axis, place: Float64Array) -> LinesError:
-    """Return the refusal of a sheet that has no outline near a place."""
+    """Return the refusal of a surface that has no outline near a place."""
     middles = rays.origins + 0.5 * rays.limits[:, None] * rays.ways
     near = int(np.hypot(*(middles - place).T).argmin())
     return LinesError(
