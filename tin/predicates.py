@@ -23,7 +23,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 if TYPE_CHECKING:
-    from ..base.arrays import AnyArray, BoolArray, Float64Array, Int8Array, Int64Array
+    from ..base.arrays import (
+        AnyArray,
+        BoolArray,
+        Float64Array,
+        Int8Array,
+        Int32Array,
+        Int64Array,
+    )
 
 EXACT_RANGE = (2.0**-200, 2.0**250)
 """Smallest (but 0) and largest magnitude of a coordinate for which the signs are exact."""
@@ -105,32 +112,33 @@ def in_circle(xy: Columns, a: AnyArray, b: AnyArray, c: AnyArray, d: AnyArray) -
 
 
 def falls_across(
-    points: Float64Array, a: AnyArray, b: AnyArray, c: AnyArray
+    points: Float64Array, triangles: Int32Array
 ) -> tuple[Int8Array, Float64Array, Float64Array]:
-    """Tell whether the plane through ``a``, ``b``, ``c`` falls across the edge from ``a`` to ``b``.
+    """Tell whether triangles fall across their edges, each opposite a corner, all (m, 3).
 
-    These are vertex numbers, (k,), counter-clockwise, of (n, 3) points whose elevations are of a
-    magnitude in ``EXACT_RANGE``, too, or 0. Returns exact signs, (k,): +1 if the steepest descent
-    leaves the triangle across the edge, -1 if it enters there, 0 if it runs along the edge, or the
-    plane is level; then descent times the length of the edge, times twice the area, rounded, and
-    bounds of the error of these.
+    Triangles are counter-clockwise, of (n, 3) points whose elevations are of a magnitude in
+    ``EXACT_RANGE``, too, or 0. Returns exact signs: +1 if the steepest descent leaves the triangle
+    across the edge, -1 if it enters there, 0 if it runs along the edge, or the plane is level; then
+    descent times the length of the edge, times twice the area, rounded, and bounds of the error of
+    these.
     """
-    signs = np.empty(len(a), np.int8)
-    values, bounds = np.empty(len(a)), np.empty(len(a))
+    signs = np.empty(triangles.shape, np.int8)
+    values, bounds = np.empty(triangles.shape), np.empty(triangles.shape)
     x, y, z = (np.ascontiguousarray(axis) for axis in points.T)
-    for block in blocks(len(a)):
-        (ax, bx, cx), (ay, by, cy), (az, bz, cz) = (
-            [axis.take(corner[block]) for corner in (a, b, c)] for axis in (x, y, z)
-        )
-        ux, uy, uz, vx, vy, vz = bx - ax, by - ay, bz - az, cx - ax, cy - ay, cz - az
-        square = ux * ux + uy * uy
-        value = vz * square - uz * (ux * vx + uy * vy)
-        bound = np.abs(vz) * square + np.abs(uz) * (np.abs(ux * vx) + np.abs(uy * vy))
-        bound *= _FALL_BOUND
-        terms = ((bx, ax), (by, ay), (bz, az), (cx, ax), (cy, ay), (cz, az))
-        # Where all products are 0, so is the value: within the range none underflows.
-        signs[block] = _decide(value, np.where(bound == 0.0, -1.0, bound), terms, _decide_fall)
-        values[block], bounds[block] = value, bound
+    for block in blocks(len(triangles)):
+        vertices = np.ascontiguousarray(triangles[block].T, np.int64)
+        corners = list(zip(*(axis.take(vertices) for axis in (x, y, z)), strict=True))
+        for k in range(3):
+            (cx, cy, cz), (ax, ay, az), (bx, by, bz) = corners[k:] + corners[:k]
+            ux, uy, uz, vx, vy, vz = bx - ax, by - ay, bz - az, cx - ax, cy - ay, cz - az
+            square = ux * ux + uy * uy
+            value = vz * square - uz * (ux * vx + uy * vy)
+            bound = np.abs(vz) * square + np.abs(uz) * (np.abs(ux * vx) + np.abs(uy * vy))
+            bound *= _FALL_BOUND
+            terms = ((bx, ax), (by, ay), (bz, az), (cx, ax), (cy, ay), (cz, az))
+            # Where all products are 0, so is the value: within the range none underflows.
+            decided = _decide(value, np.where(bound == 0.0, -1.0, bound), terms, _decide_fall)
+            signs[block, k], values[block, k], bounds[block, k] = decided, value, bound
     return signs, values, bounds
 
 

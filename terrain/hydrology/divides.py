@@ -15,6 +15,7 @@ from .vertices import NOWHERE
 
 if TYPE_CHECKING:
     from ...base.arrays import Float64Array, Int32Array, Int64Array
+    from .falls import Falls
     from .networks import Network
 
 _NEAR = 1e-10
@@ -40,29 +41,43 @@ class _Cuts(NamedTuple):
     """(t,), triangles with a place on an edge of theirs, beyond the cut ones."""
 
 
-def cut_at_divides(network: Network, labels: Int32Array, level: Int32Array) -> DividedMesh:
-    """Return triangles that share their vertices, each of one label.
+class Divides(NamedTuple):
+    """Where triangles are to be cut, and their labels."""
+
+    falls: Falls
+    surface: _kernel.FallingSurface
+    """Of the compiled core."""
+    cuts: _Cuts
+    whole: Int32Array
+    """(m,), the label of each triangle that is not cut."""
+
+
+def find_divides(network: Network, labels: Int32Array, level: Int32Array) -> Divides:
+    """Find where water parts within triangles.
 
     ``labels`` are those of the strips, (s,); ``level`` those of level triangles, (m,).
     """
-    falls, offsets = network.walker.falls, network.strips.offsets
+    offsets = network.strips.offsets
     whole = level.copy()
     sloping = np.flatnonzero(np.diff(offsets))
     whole[sloping] = labels[offsets[sloping + 1] - 1]
-    rows = np.flatnonzero(labels[1:] != labels[:-1]) + 1
-    owners = network.strips.find_triangles(rows)
-    inner = offsets[owners] != rows
-    rows, owners = rows[inner], owners[inner]
-    cuts = _place_cuts(network, rows, owners, labels)
-    del rows, owners, inner, sloping  # of all strips: what was used is let go
+    differs = np.ones(len(labels), np.bool_)
+    np.not_equal(labels[1:], labels[:-1], out=differs[1:])
+    differs[offsets[sloping]] = False  # from one triangle to the next
+    rows = np.flatnonzero(differs)
+    cuts = _place_cuts(network, rows, network.strips.find_triangles(rows), labels)
+    return Divides(network.walker.falls, network.surface, cuts, whole)
+
+
+def cut_at_divides(divides: Divides) -> DividedMesh:
+    """Return triangles that share their vertices, each of one label."""
+    falls, _, cuts, whole = divides
     is_cut = np.zeros(len(falls.triangles), np.bool_)
     is_cut[cuts.triangles] = is_cut[cuts.touched] = True
-    made, regions = _cut_triangles(network, cuts, np.flatnonzero(is_cut), whole)
-    triangles = np.concatenate([falls.triangles[~is_cut], made])
-    del made
+    made, regions = _cut_triangles(divides, np.flatnonzero(is_cut))
     points = np.concatenate([falls.points[:, :2], cuts.places])
+    triangles = np.concatenate([falls.triangles[~is_cut], made])
     patch_regions = np.append(whole[~is_cut], regions).astype(np.int64)
-    del cuts, regions, whole
     return DividedMesh.of(points, triangles, patch_regions)
 
 
@@ -110,12 +125,11 @@ def _place_cuts(
     )
 
 
-def _cut_triangles(
-    network: Network, cuts: _Cuts, triangles: Int64Array, whole: Int32Array
-) -> tuple[Int32Array, Int32Array]:
+def _cut_triangles(divides: Divides, triangles: Int64Array) -> tuple[Int32Array, Int32Array]:
     """Cut triangles into cells, and these into triangles; return them, and their labels."""
-    falls, count = network.walker.falls, len(network.walker.falls.points)
-    turns = np.array([1, 2, 0]) + network.surface.bases_of(triangles).edges[:, None]
+    falls, surface, cuts, whole = divides
+    count = len(falls.points)
+    turns = np.array([1, 2, 0]) + surface.bases_of(triangles).edges[:, None]
     corners = falls.triangles[triangles[:, None], turns % 3]  # start, end, apex
     keys = topology.edge_keys(corners[:, [[1, 2], [2, 0], [0, 1]]], count)[:, [2, 1, 0]]
     begin = cuts.edges.searchsorted(keys)

@@ -11,12 +11,12 @@ from ...base.errors import PointsError
 from ...base.products import product
 from ...base.progress import Progress
 from ...base.results import Features
+from ...tin.predicates import blocks
 from .. import _kernel
 from ..surface import as_places, find_reference
 from .descent import MOVING
-from .divides import cut_at_divides
+from .divides import cut_at_divides, find_divides
 from .filling import fill
-from .hierarchy import build_hierarchy
 from .networks import accumulate, build_network, find_ends
 from .paths import FILLED_NOTE
 from .routes import DESCENT, FLAT_GROUND, KINDS, POND
@@ -105,7 +105,9 @@ def catchments(
     is_filled = as_flag("fill_depressions", fill_depressions)
     reference, done = find_reference(tin, "Catchments"), Progress(progress)
     notes: tuple[str, ...] = (FILLED_NOTE,) if is_filled else ()
+    nothing = np.zeros(0, np.int32)  # of all strips: what is not used, or was, is let go
     network = build_network(tin, fill(tin) if is_filled else None, done.stage(0.1, 0.7))
+    network = network._replace(uppers=nothing)
     if outlets is not None:
         named, noted = _place_outlets(tin, network, outlets)
         notes += noted
@@ -122,13 +124,14 @@ def catchments(
     kept = np.flatnonzero(areas > 0.0) if outlets is None else np.arange(len(named))
     columns = _describe_catchments(tin, network, named[kept], kept, outlets is None)
     columns["area"] = areas[kept]
-    used = np.zeros(0, np.int32)
-    network = network._replace(nexts=used, uppers=used)  # of all strips: what was used is let go
+    network = network._replace(nexts=nothing)
     order = np.lexsort((kept, -areas[kept]))
     places = np.full(len(named) + 1, NOWHERE, np.int32)
     places[kept[order]] = np.arange(len(kept))
     labels, level = places[labels], places[level]
-    drawn = gather_polygons(cut_at_divides(network, labels, level))
+    divides = find_divides(network, labels, level)
+    del network, labels, level
+    drawn = gather_polygons(cut_at_divides(divides))
     done.end()
     return Features.of_polygons(
         drawn.points,
@@ -245,8 +248,11 @@ def _label(network: Network, numbers: Int32Array) -> tuple[Int32Array, Int32Arra
 
 
 def _measure(network: Network, labels: Int32Array, level: Int32Array, count: int) -> Float64Array:
-    found = np.bincount(labels + 1, network.measure_strips(), count + 1)[1:]
-    areas: Float64Array = found.astype(np.float64)  # without strips they are whole numbers
+    areas = np.zeros(count + 1)  # the last of what has no label
+    sizes = network.measure_strips()
+    for block in blocks(len(sizes)):
+        np.add.at(areas, labels[block], sizes[block])
+    areas = areas[:-1]
     flat = level != NOWHERE
     np.add.at(areas, level[flat], network.areas[flat])
     return areas
@@ -276,11 +282,21 @@ def _describe_pits(tin: TIN, network: Network, nodes: Int64Array) -> dict[str, A
     outside = vertices == count
     vertices[outside] = 0
     pit = ~outside & ~drains[vertices]
-    hierarchy = build_hierarchy(tin)
-    vertices[pit] = hierarchy.pits[hierarchy.basins[vertices[pit]]]
+    vertices[pit] = _find_westernmost(tin.points, network.grounds)[vertices[pit]]
     vertices[outside] = NOWHERE
     ends = np.where(outside, "boundary", np.where(pit, "pit", "flat")).astype(object)
     return {"pit": vertices, "end": ends}
+
+
+def _find_westernmost(points: Float64Array, grounds: Int32Array) -> Int64Array:
+    """Return the westernmost vertex of each level ground, of several the southernmost, (n,)."""
+    found = np.arange(len(grounds))
+    wide = np.flatnonzero(grounds != found)
+    members = np.union1d(wide, grounds[wide])
+    x, y = points[members, :2].T
+    order = members[np.lexsort((y, x))[::-1]]
+    found[grounds[order]] = order  # the last one that is written stays
+    return found
 
 
 def _place_outlets(tin: TIN, network: Network, outlets: Any) -> tuple[Int64Array, tuple[str, ...]]:

@@ -101,23 +101,13 @@ def find_falls(tin: TIN) -> Falls:
     """
     surface = tin.triangulation
     require_exact_range(surface.points[:, 2:], "Elevations", ["elevation"])
-    signs = np.empty(surface.triangles.shape, np.int8)
-    values = np.empty(surface.triangles.shape)
-    for k in range(3):
-        signs[:, k], values[:, k] = _measure_falls(surface.points, surface.triangles, k)
-    return Falls(surface.points, surface.triangles, surface.neighbors, signs, values)
-
-
-def _measure_falls(
-    points: Float64Array, triangles: Int32Array, k: int
-) -> tuple[Int8Array, Float64Array]:
-    """Return signs and values of the edges opposite corner k."""
-    a, b, c = (triangles[:, (k + turn) % 3] for turn in (1, 2, 0))
-    signs, values, bounds = falls_across(points, a, b, c)
-    for row in np.flatnonzero((bounds > _POOR * np.abs(values)) & (signs != 0)).tolist():
-        values[row] = measure_fall(points, a[row], b[row], c[row])
+    signs, values, bounds = falls_across(surface.points, surface.triangles)
+    poor = (bounds > _POOR * np.abs(values)) & (signs != 0)
+    for row, k in np.argwhere(poor).tolist():
+        a, b, c = np.roll(surface.triangles[row], 2 - k).tolist()
+        values[row, k] = measure_fall(surface.points, a, b, c)
     values[signs == 0] = 0.0
-    return signs, values
+    return Falls(surface.points, surface.triangles, surface.neighbors, signs, values)
 
 
 def measure_fall(points: Float64Array, a: int, b: int, c: int) -> Fraction:

@@ -40,12 +40,13 @@ def repair_polygons(
     shapely = optional.load("shapely")
     offsets = parts.ring_offsets, parts.polygon_offsets
     shapes = shapely.from_ragged_array(shapely.GeometryType.POLYGON, parts.points, offsets)
-    is_bad = ~shapely.is_valid(shapes)
-    if together:
+    if together:  # polygons that are valid together are so by themselves
         _, owner = np.unique(parts.band, return_inverse=True)
         order = np.argsort(owner, kind="stable")
         wholes = shapely.multipolygons(shapes[order], indices=owner[order])
-        is_bad |= ~shapely.is_valid(wholes)[owner]
+        is_bad = ~shapely.is_valid(wholes)[owner]
+    else:
+        is_bad = ~shapely.is_valid(shapes)
     if not is_bad.any():
         return parts, ()
     bands = np.unique(parts.band[is_bad])
