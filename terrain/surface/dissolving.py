@@ -80,8 +80,9 @@ def dissolve(tin: Mesh, classes: Int64Array) -> Dissolved:
     if len(wanted) == 0:
         nothing = np.zeros(1, np.int64)
         return Dissolved(nothing[:0], nothing, nothing, nothing, nothing[:0])
-    is_same = (tin.neighbors != NO_NEIGHBOR) & (classes[tin.neighbors] == classes[:, None])
-    neighbors = np.where(is_same, tin.neighbors, np.int32(NO_NEIGHBOR))
+    neighbors = tin.neighbors.copy()
+    for side in neighbors.T:
+        side[classes[side] != classes] = NO_NEIGHBOR  # which stays so, whatever that compares
     parts = number_components(neighbors)
     rings = _trace_rings(tin.triangles, neighbors, parts, classes)
     return _as_levels(rings, _sort_exteriors_first(rings, classes, tin.points), classes)

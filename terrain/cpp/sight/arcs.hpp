@@ -52,6 +52,15 @@ class Arcs {
 
   // The numbers of arcs, each after those that it is behind of; fewer if the pulse ends.
   std::vector<std::uint32_t> sort(Pulse& pulse) {
+    relate_neighbors(pulse);
+    return follow(pulse);
+  }
+
+ private:
+  static constexpr std::uint32_t kNone = UINT32_MAX;
+
+  // Those that are next to each other at some direction.
+  void relate_neighbors(Pulse& pulse) {
     EdgeTree tree(view_.eye.at);
     std::vector<EdgeTree::Handle> handles(size(), EdgeTree::kNone);
     second_.assign(edges_.size(), kNone);
@@ -68,11 +77,7 @@ class Arcs {
         for (std::uint32_t e = edges_.begin(i); e < edges_.end(i); ++e) insert(tree, handles, e);
       }
     }
-    return follow(pulse);
   }
-
- private:
-  static constexpr std::uint32_t kNone = UINT32_MAX;
 
   void relate(const EdgeTree& tree, EdgeTree::Handle near, EdgeTree::Handle far) {
     if (near == EdgeTree::kNone || far == EdgeTree::kNone) return;
@@ -108,6 +113,7 @@ class Arcs {
     for (std::uint32_t& begin : begins) begin = sum += begin;
     std::vector<std::uint32_t> behind(relations_.size());
     for (const auto& [near, far] : relations_) behind[--begins[near]] = far;
+    decltype(relations_)().swap(relations_);  // lets go of the most memory of all
     std::vector<std::uint32_t> order, open;
     for (std::uint32_t a = 0; a < size(); ++a) {
       if (before[a] == 0) open.push_back(a);

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "../../../tin/cpp/base/arrays.hpp"
@@ -83,6 +84,17 @@ class Directions {
   Vertex vertex(std::int32_t position) const { return order_[position]; }
   std::int32_t slot(Vertex v) const { return slots_[number(v)]; }
   std::int32_t position(Vertex v) const { return positions_[number(v)]; }
+
+  // Vertices are numbered by their positions from now on.
+  void renumber() {
+    auto slots = scratch_array<std::int32_t>(static_cast<std::size_t>(count_));
+    for (std::int32_t at = 0; at < count_; ++at) slots[at] = slot(order_[at]);
+    slots_ = std::move(slots);
+    for (std::int32_t at = 0; at < count_; ++at) {
+      order_[at] = Vertex{at};
+      positions_[at] = at;
+    }
+  }
 
   // Positions at which sectors begin, and the end of the last one.
   const std::vector<std::int32_t>& sectors() const { return sectors_; }

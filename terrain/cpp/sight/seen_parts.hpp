@@ -341,12 +341,11 @@ class SortedSurface {
 // Check `team.is_stopped()` afterwards.
 inline void find_seen_parts(const Surface& given, const View& view, Part* parts, Cells& cells,
                             Team& team) {
-  const auto of_given = sort_ends(given, view, team);
-  if (!of_given) return;
-  const SortedSurface sorted(given, *of_given);
-  const Surface& surface = sorted.surface();
-  const auto directions = sort_ends(surface, view, team);
+  auto directions = sort_ends(given, view, team);
   if (!directions) return;
+  const SortedSurface sorted(given, *directions);
+  const Surface& surface = sorted.surface();
+  directions->renumber();
   const SightEdges edges(surface, view.eye.at, view.radius, *directions,
                          SightEdges::Extra::kHalfEdges);
   Pulse pulse(team);
