@@ -96,6 +96,17 @@ def test_pits_with_a_catchment_are_those_of_pits():
     assert sorted(found.columns["pit"][is_pit]) == sorted(ts.pits(tin).columns["vertex"])
 
 
+@pytest.mark.parametrize("seed", [1, 2, 3])
+def test_level_pits_have_the_vertex_that_pits_lists_whatever_the_order(seed):
+    rng = np.random.default_rng(seed)
+    tin = triangulate_whole_numbers(12, 2, rng)
+    tin = ts.triangulate(tin.points[rng.permutation(len(tin.points))])
+    found = ts.catchments(tin)
+    pits = found.columns["pit"][found.columns["end"] == "pit"]
+    assert len(pits) > 1
+    assert set(pits) <= set(ts.pits(tin).columns["vertex"])
+
+
 def test_level_ground_is_told():
     x, y = (axis.ravel() for axis in np.meshgrid(np.arange(5.0), np.arange(5.0)))
     inner = (abs(x - 2) < 2) & (abs(y - 2) < 2)
