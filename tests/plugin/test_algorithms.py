@@ -127,7 +127,10 @@ def test_products_are_those_of_the_package(tmp_path, survey):
         "slope": job("slope", INPUT="ground", UNIT="percent", BREAKS="5,15",
                      TABLE=tmp_path / "s.csv", OUTPUT=tmp_path / "slope.gpkg"),
         "profile": job("profile", INPUT="ground", SECOND="flat", SECOND_Z_FIELD="high", LINE="cut",
-                       INTERVAL=10, OUTPUT=tmp_path / "profile.csv"),
+                       INTERVAL=10, OUTPUT=tmp_path / "profile.csv",
+                       SHEETS=tmp_path / "profile.pdf"),
+        "plan": job("plan", INPUT="ground", SCALE="2000", LAYOUT="strips", AXIS="cut", INTERVAL=2,
+                    SPOTS="peaks", TITLE="Quarry", OUTPUT=tmp_path / "plan.pdf"),
         "sections": job("profile", INPUT_FILE=tmp_path / "ground.ply", LINE="cut",
                         SECTION_INTERVAL=50, SECTION_WIDTH=20, OUTPUT=tmp_path / "cross.csv",
                         SECTIONS=tmp_path / "cross.gpkg"),
@@ -152,6 +155,7 @@ def test_products_are_those_of_the_package(tmp_path, survey):
     check_contours(told, tin, tmp_path)
     check_slope(told["slope"], tin, tmp_path)
     check_sections(told, tin, survey, tmp_path)
+    check_sheets(tin, tmp_path)
     check_stakes(told["stakes"], tin, survey, tmp_path)
     check_volumes(told, tin, tmp_path)
     check_rasters(told, tin, tmp_path)
@@ -210,6 +214,19 @@ def check_sections(told, tin, survey, folder):
     texts = ezdxf.readfile(folder / "sections.dxf").modelspace().query("TEXT")
     heads = [one.dxf.text for one in texts if one.dxf.text.startswith("Station ")]
     assert len(heads) == len(quantities)
+
+
+def check_sheets(tin, folder):
+    """Check that the drawn plan and profile are the ones of the package, to the words on them."""
+    axis = ts.Alignment.from_points(CUT, crs=UTM)
+    options = {"scale": 2000, "layout": "strips", "axis": axis, "interval": 2, "spots": "peaks"}
+    ts.plan(tin, title="Quarry", **options).save(folder / "wanted.pdf")
+    made, wanted = (read_pdf(folder / name) for name in ("plan.pdf", "wanted.pdf"))
+    assert [str(one.texts) for one in made] == [str(one.texts) for one in wanted]
+    assert any(one.text == "Quarry" for one in made[0].texts)
+    sheets = " ".join(one.text for page in read_pdf(folder / "profile.pdf") for one in page.texts)
+    assert "Elevations" in sheets
+    assert f"{ts.profile(tin, CUT)['elevation'][0]:.2f}" in sheets
 
 
 def check_stakes(answer, tin, survey, folder):

@@ -12,6 +12,7 @@ from .ground import GroundAlgorithm
 from .inspect import InspectAlgorithm
 from .install import InstallAlgorithm
 from .paste import ClipAlgorithm, CoregisterAlgorithm, MergeAlgorithm, PasteAlgorithm
+from .plan import PlanAlgorithm
 from .profile import ProfileAlgorithm
 from .raster import RasterAlgorithm
 from .refine import RefineAlgorithm
@@ -42,6 +43,7 @@ ALGORITHMS = (
     MergeAlgorithm,
     ClipAlgorithm,
     CoregisterAlgorithm,
+    PlanAlgorithm,
     RasterAlgorithm,
     RefineAlgorithm,
     SimplifyAlgorithm,

@@ -8,7 +8,7 @@ from qgis.core import QgsProcessing, QgsProcessingParameterVectorDestination
 
 from ..inputs import Lines, Surface
 from ..options import describe, number
-from .base import PICTURES, TABLE_FILES, CommandAlgorithm, Run
+from .base import PICTURES, SHEETS, TABLE_FILES, CommandAlgorithm, Run
 
 _SECTIONS = (
     number("SECTION_INTERVAL", "Cross sections: interval", "", "Along the line.", least=0.0),
@@ -55,12 +55,13 @@ class ProfileAlgorithm(CommandAlgorithm):
             "SECTIONS", "Cross sections as lines", QgsProcessing.TypeVectorLine, None, True, False
         )
         self.addParameter(describe(made, "Lines in space, of cross sections alone."))
+        self.add_file_output("SHEETS", "Sheets", SHEETS, "True to scale.", optional=True)
 
     def make(self, run: Run) -> dict[str, Any]:
         """Cut."""
         arguments = ["profile", *self._list_surfaces(run), *run.list_lines(self.lines)]
         arguments += [*run.list_options(self.options), *self._list_sections(run)]
-        paths, named = run.list_outputs("OUTPUT", "PICTURE", "SECTIONS")
+        paths, named = run.list_outputs("OUTPUT", "PICTURE", "SECTIONS", "SHEETS")
         run.run([*arguments, *run.list_extra(), *named])
         self.load_later(run, paths["OUTPUT"], "Profile")
         return dict(paths)
