@@ -49,12 +49,13 @@ on one core of a shared machine:
 |---|---|---|---|---|---|
 | GeoPackage, by SQLite alone | 219 MB | 5.4 s | 3.4 to 4.7 s | every GIS | nothing |
 | GeoPackage of the triangles, by GDAL | 284 MB | 8.0 s | | every GIS | all but the triangles |
-| PLY with edges | 25 MB | 0.1 s | 0.7 s | QGIS (mesh), CloudCompare, MeshLab | report, undo |
+| PLY with edges | 25 MB | 0.1 s | 0.7 s | CloudCompare, MeshLab, Blender | report, undo |
 | Parquet, two tables | 24 MB | 0.3 s | 0.03 s | columnar tools | what tables cannot hold |
 
 GDAL's file has a spatial index; filling one by SQLite alone would take 21 s. Parquet and Arrow
 hold tables: a TIN needs several files, or a layout that no other program reads, so they are not
-used for whole TINs. Use PLY to view a surface as a mesh, and where size matters.
+used for whole TINs. Use PLY to view a surface in CloudCompare, MeshLab or Blender, and where size
+matters; of a PLY with breaklines QGIS draws these alone, so for a mesh layer use UGRID (`.nc`).
 
 ## Formats and commands of other packages
 

@@ -42,7 +42,7 @@ FORMATS = (
     ),
     _make(
         "ply",
-        "PLY mesh (opens in QGIS, CloudCompare, MeshLab)",
+        "PLY mesh (opens in CloudCompare, MeshLab, Blender)",
         ".ply",
         module="ply.file",
         sniff=signatures.is_ply,

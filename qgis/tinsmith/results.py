@@ -5,10 +5,12 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from osgeo import gdal
 from qgis.core import (
     QgsMeshLayer,
     QgsProcessingContext,
     QgsProcessingLayerPostProcessorInterface,
+    QgsProcessingUtils,
     QgsVectorLayer,
 )
 
@@ -21,9 +23,12 @@ _MESHES = (".ply", ".nc", ".2dm")
 _TABLES = (".csv", ".tsv")
 _VECTORS = (".gpkg", ".geojson", ".fgb", ".shp", ".dxf", *_TABLES)
 
+_UNKNOWN = "unknown"
+_SYMBOLS = {"metre": "m", "foot": "ft", "US survey foot": "US ft"}
+
 _EDGES_ALONE = (
-    "QGIS colors the breaklines alone of a PLY mesh that has any: write .nc or .2dm to see its "
-    "faces colored."
+    "QGIS colors the breaklines alone of a PLY mesh that has any: write .nc, .gpkg or .2dm to see "
+    "its faces colored."
 )
 
 
@@ -44,6 +49,28 @@ class Styler(QgsProcessingLayerPostProcessorInterface):
         layer.triggerRepaint()
         if self in Styler.kept:
             Styler.kept.remove(self)
+
+
+def name_layer(path: str, title: str, unit: str) -> str:
+    """Return the name of a layer: its file, if the user named one, and the unit of elevations."""
+    is_temporary = Path(QgsProcessingUtils.tempFolder()) in Path(path).parents
+    name = title if is_temporary else Path(path).stem
+    return f"{name} ({unit})" if unit else name
+
+
+def find_unit(record: dict[str, Any]) -> str:
+    """Return the unit of elevations that the result of a command tells, or nothing."""
+    tin = record.get("tin") or {}
+    found = (tin.get("units") or {}).get("vertical")
+    found = found or (record.get("units") or {}).get("elevation") or _UNKNOWN
+    return "" if found == _UNKNOWN else _SYMBOLS.get(found, found)
+
+
+def rename_on_loading(path: str, unit: str, context: Any) -> None:
+    """Name a layer that Processing is to load after its file."""
+    if context.willLoadLayerOnCompletion(path):
+        details = context.layerToLoadOnCompletionDetails(path)
+        details.name = name_layer(path, details.name, unit)
 
 
 def style_on_loading(path: str, style: Callable[[Any], None], context: Any) -> None:
@@ -71,9 +98,19 @@ def load_file(path: str, name: str, output: str, context: Any, feedback: Any) ->
 
 
 def open_layer(path: str, name: str) -> Any:
-    """Return a file as a layer, or None if QGIS has none for it."""
+    """Return a file as a layer, or None if QGIS has none for it; libraries print nothing."""
+    gdal.PushErrorHandler("CPLQuietErrorHandler")
+    try:
+        return _open_layer(path, name)
+    finally:
+        gdal.PopErrorHandler()
+
+
+def _open_layer(path: str, name: str) -> Any:
     suffix = Path(path).suffix.lower()
     layer = None
+    if suffix == ".nc":
+        gdal.OpenEx(path, gdal.OF_RASTER)  # else HDF5 prints what MDAL's other readers miss
     if suffix in _MESHES:
         layer = QgsMeshLayer(path, name, "mdal")
     elif suffix in _VECTORS:

@@ -29,6 +29,7 @@ from support.qgis_jobs import (
     read_layer,
     read_survey,
     require_done,
+    take_layer,
 )
 from support.qgis_plugin import drive
 
@@ -64,6 +65,9 @@ def test_tins_are_those_of_the_package(tmp_path, survey):
         "check": job("check", INPUT="no crs", OUTPUT=tmp_path / "found.json"),
         "unsound": job("check", INPUT_FILE=tmp_path / "twice.obj"),
         "convert": job("convert", INPUT="no crs", OUTPUT=tmp_path / "again.gpkg"),
+        "feet": job("build", FILE=SURVEY, CRS=UTM, ELEVATION_UNIT="ft",
+                    OUTPUT=tmp_path / "feet.nc"),
+        "unnamed": job("build", FILE=SURVEY, CRS=UTM, OUTPUT="TEMPORARY_OUTPUT"),
     }  # fmt: skip
     (tmp_path / "twice.obj").write_text(UNSOUND)
     told = drive(tmp_path, layers, jobs)
@@ -74,12 +78,15 @@ def test_tins_are_those_of_the_package(tmp_path, survey):
     assert_same_tin(ts.read(tmp_path / "dem.2dm", crs=UTM), ts.triangulate(ts.read(DEM, stride=16)))
     coded = ts.triangulate(ts.lines_from_codes(survey))
     assert_same_tin(ts.read(tmp_path / "file.gpkg"), coded)
-    assert told["file"]["layers"]["TIN"]["count"] == len(coded.triangles)
-    mesh = told["field"]["layers"]["TIN"]
+    assert take_layer(told["file"], "file")["count"] == len(coded.triangles)
+    mesh = take_layer(told["field"], "field")
     assert (mesh["crs"], mesh["type"]) == (UTM, "QgsMeshLayer")
     assert_same_tin(ts.read(tmp_path / "fine.ply"), ts.refine(tin, max_area=400))
     assert_same_tin(ts.read(tmp_path / "few.ply"), ts.simplify(tin, tolerance=0.5))
     assert_same_tin(ts.read(tmp_path / "again.gpkg"), tin)
+    assert list(told["feet"]["layers"]) == ["feet (ft)"]
+    assert list(told["unnamed"]["layers"]) == ["TIN"]
+    assert told["file"]["layers"]["file"]["renderer"] == "graduatedSymbol"
     assert told["check"]["outputs"] == {
         "SOUND": True, "PROBLEMS": 0, "OUTPUT": str(tmp_path / "found.json")
     }  # fmt: skip
@@ -99,14 +106,14 @@ def check_lines(answer, survey, folder):
     )
     assert_same_tin(made, wanted)
     assert str(made.lines) == str(wanted.lines)
-    layer = answer["layers"]["TIN"]
+    layer = take_layer(answer, "lines")
     assert (layer["crs"], layer["faces"]) == (UTM, len(wanted.triangles))
     low, high = wanted.points[:, 2].min(), wanted.points[:, 2].max()
     assert layer["range"] == pytest.approx([low, high], abs=1e-9)
     assert layer["edges"]
     assert layer["ramp"] >= 5
     assert json.loads((folder / "r.json").read_text())["rows"] == len(survey)
-    assert any(kind == "warning" and ".nc or .2dm" in text for kind, text in answer["log"])
+    assert any(kind == "warning" and ".nc, .gpkg or .2dm" in text for kind, text in answer["log"])
     assert answer["outputs"]["TRIANGLES"] == len(wanted.triangles)
     said = [text for kind, text in answer["log"] if kind == "info"]
     assert any(text.startswith("Points") and "from points" in text for text in said)
@@ -133,7 +140,7 @@ def test_products_are_those_of_the_package(tmp_path, survey):
                     SPOTS="peaks", TITLE="Quarry", OUTPUT=tmp_path / "plan.pdf"),
         "sections": job("profile", INPUT_FILE=tmp_path / "ground.ply", LINE="cut",
                         SECTION_INTERVAL=50, SECTION_WIDTH=20, OUTPUT=tmp_path / "cross.csv",
-                        SECTIONS=tmp_path / "cross.gpkg"),
+                        SECTIONS=tmp_path / "across.gpkg"),
         "quantities": job("sections", INPUT="ground", DESIGN="flat", DESIGN_Z_FIELD="high",
                           LINE="cut", INTERVAL=50, WIDTH=20, OUTPUT=tmp_path / "quantities.csv",
                           SHEETS=tmp_path / "sections.dxf"),
@@ -163,23 +170,23 @@ def test_products_are_those_of_the_package(tmp_path, survey):
 
 def check_contours(told, tin, folder):
     wanted = ts.contours(tin, interval=1)
-    layer = told["lines"]["layers"]["Contours"]
+    layer = take_layer(told["lines"], "lines")
     assert (layer["count"], layer["crs"], layer["labels"]) == (len(wanted), UTM, True)
     assert layer["widths"][0] > layer["widths"][1]
     assert (layer["field"], layer["unclassified"]) == ("is_index", 0)
     again = ts.write(wanted, folder / "wanted.gpkg")
     assert read_layer(folder / "lines.gpkg") == read_layer(again)
     bands = ts.contour_bands(tin, levels=[320, 325])
-    layer = told["bands"]["layers"]["Contours"]
+    layer = take_layer(told["bands"], "bands")
     assert (layer["count"], layer["unclassified"]) == (len(bands), 0)
     labels = ts.contour_labels(ts.contours(tin, interval=2))
-    layer = told["labels"]["layers"]["Contours"]
+    layer = take_layer(told["labels"], "labels")
     assert (layer["count"], layer["labels"]) == (len(labels), True)
 
 
 def check_slope(answer, tin, folder):
     wanted = ts.slope_classes(tin, breaks=[5, 15], unit="percent")
-    layer = answer["layers"]["Slope classes"]
+    layer = take_layer(answer, "slope")
     assert layer["count"] == len(wanted)
     assert layer["legend"] == wanted.columns["label"].tolist()
     assert layer["colors"] == [one.lower() for one in wanted.columns["color"].tolist()]
@@ -204,9 +211,9 @@ def check_sections(told, tin, survey, folder):
     for name in ("elevation_ground", "elevation_flat", "difference_flat"):
         found = read_numbers(folder / "profile.csv", name)
         np.testing.assert_array_equal(found, wanted[name])
-    assert told["profile"]["layers"]["Profile"]["count"] == len(wanted)
+    assert take_layer(told["profile"], "profile")["count"] == len(wanted)
     lines = ts.section_lines(tin, CUT, interval=50, width=20)
-    assert told["sections"]["layers"]["Cross sections as lines"]["count"] == len(lines)
+    assert take_layer(told["sections"], "across")["count"] == len(lines)
     quantities = ts.section_volumes(tin, raised, CUT, interval=50, width=20)
     for name in ("station", "cut_total", "fill_total"):
         found = read_numbers(folder / "quantities.csv", name)
@@ -237,7 +244,7 @@ def check_stakes(answer, tin, survey, folder):
     for name in ("elevation", "cut", "fill", "station", "offset"):
         found = read_numbers(folder / "stakes.csv", name, missing=np.nan)
         np.testing.assert_array_equal(found, wanted[name])
-    layer = answer["layers"]["Points to set out"]
+    layer = take_layer(answer, "stakes")
     assert (layer["count"], layer["crs"]) == (len(at), UTM)
 
 
@@ -248,7 +255,7 @@ def check_volumes(told, tin, folder):
     for name in ("cut", "fill", "net", "area"):
         assert told["volume"]["outputs"][name.upper()] == wanted[name].sum()
         np.testing.assert_array_equal(read_numbers(folder / "volume.csv", name), wanted[name])
-    zones = told["volume"]["layers"]["Zones of cut and fill"]
+    zones = take_layer(told["volume"], "zones")
     assert (zones["field"], zones["unclassified"], zones["crs"]) == ("kind", 0, UTM)
     stages = ts.stage_storage(tin, interval=5)
     np.testing.assert_array_equal(read_numbers(folder / "stages.csv", "volume"), stages["volume"])
@@ -267,9 +274,9 @@ def check_rasters(told, tin, folder):
         options = {"value": "tri", "operator": "wilson", "compute_edges": True}
         wanted = ts.rasterize(tin, like=one, **options).bands["tri"]
         np.testing.assert_array_equal(one.read(1), wanted)
-    layer = told["raster"]["layers"]["Raster"]
+    layer = take_layer(told["raster"], "raster")
     assert (layer["renderer"], layer["crs"]) == ("singlebandpseudocolor", UTM)
-    assert told["light"]["layers"]["Raster"]["renderer"] == "singlebandgray"
+    assert take_layer(told["light"], "light")["renderer"] == "singlebandgray"
 
 
 # ------------------------------------------------------------------- what is refused

@@ -105,7 +105,7 @@ def check_flow(told, tin, folder):
     for name, wanted in found.items():
         again = ts.write(wanted, folder / f"wanted {name}.gpkg")
         assert qgis.read_layer(folder / f"{name}.gpkg") == qgis.read_layer(again), name
-        layer = told[name]["layers"]["Flow"]
+        layer = qgis.take_layer(told[name], name)
         assert (layer["count"], layer["crs"]) == (len(wanted), qgis.UTM)
         assert len(layer["properties"]) == (name != "hollows")
     drops = ts.flow_path(tin, PLACES)
@@ -118,13 +118,13 @@ def check_sight(told, tin, folder):
     seen = ts.viewshed(tin, EYE, eye_height=1.7)
     wanted = ts.write(seen, folder / "wanted seen.gpkg")
     assert qgis.read_layer(folder / "seen.gpkg") == qgis.read_layer(wanted)
-    layer = told["seen"]["layers"]["Sight"]
+    layer = qgis.take_layer(told["seen"], "seen")
     assert layer["legend"] == seen.columns["class"].tolist()
     assert layer["colors"] == seen.columns["color"].tolist()
     assert layer["unclassified"] == 0
     targets = qgis.read_survey().points[:300, :2]
     lines = ts.line_of_sight(tin, EYE, targets, eye_height=1.7)
-    layer = told["lines"]["layers"]["Sight"]
+    layer = qgis.take_layer(told["lines"], "lines")
     assert (layer["count"], layer["legend"]) == (300, ["visible", "blocked"])
     assert layer["unclassified"] == 0
     _, shapes, columns = qgis.read_layer(folder / "lines.gpkg")
@@ -142,9 +142,9 @@ def check_points(told, folder):
     assert outputs["OTHERS"] > 10
     classes = ts.read(folder / "all.las", attributes="all").attributes["classification"]
     np.testing.assert_array_equal(classes, made.classification)
-    assert told["low"]["layers"]["Ground points"]["count"] == len(made.survey)
+    assert qgis.take_layer(told["low"], "low")["count"] == len(made.survey)
     suspects = ts.blunders(make_cloud())
-    layer = told["suspects"]["layers"]["Suspects"]
+    layer = qgis.take_layer(told["suspects"], "suspects")
     assert (layer["field"], layer["unclassified"], layer["labels"]) == ("certainty", 0, True)
     assert told["suspects"]["outputs"]["SUSPECTS"] == layer["count"] == len(suspects) > 0
     found = ts.read(folder / "suspects.gpkg", z_field="geometry")
@@ -168,7 +168,7 @@ def check_earthwork(told, tin, folder):
     assert told["road"]["outputs"]["CUT"] == pytest.approx(ts.volume(tin, made)["cut"][0])
     pasted = ts.paste(tin, ts.triangulate(PATCH, crs=qgis.UTM))
     qgis.assert_same_tin(ts.read(folder / "pasted.nc"), pasted)
-    assert told["pasted"]["layers"]["Pasted TIN"]["faces"] == len(pasted.triangles)
+    assert qgis.take_layer(told["pasted"], "pasted")["faces"] == len(pasted.triangles)
     assert told["pasted"]["outputs"]["TRIANGLES"] == len(pasted.triangles)
     said = [text for kind, text in told["pasted"]["log"] if kind == "info"]
     assert any("Along the seam" in text for text in said)
@@ -176,7 +176,7 @@ def check_earthwork(told, tin, folder):
     qgis.assert_same_tin(ts.read(folder / "merged.ply"), merged)
     shifted = ts.coregister(tin, tin, unstable=[PAD]).tin
     qgis.assert_same_tin(ts.read(folder / "shifted.ply"), shifted)
-    assert told["shifted"]["layers"]["Shifted TIN"]["faces"] == len(shifted.triangles)
+    assert qgis.take_layer(told["shifted"], "shifted")["faces"] == len(shifted.triangles)
     clipped = ts.clip(tin, [PAD])
     qgis.assert_same_tin(ts.read(folder / "part.ply"), clipped)
-    assert told["clipped"]["layers"]["Clipped TIN"]["faces"] == len(clipped.triangles)
+    assert qgis.take_layer(told["clipped"], "part")["faces"] == len(clipped.triangles)

@@ -24,6 +24,7 @@ __all__ = [
     "read_layer",
     "read_survey",
     "require_done",
+    "take_layer",
     "write_wkt",
 ]
 
@@ -83,6 +84,14 @@ def require_done(told):
         if name != "provider":
             assert one["error"] is None, (name, one["error"], one["log"])
             assert "not correctly generated" not in str(one["log"]), (name, one["log"])
+
+
+def take_layer(answer, name):
+    """Return what is told of the layer with this name, or with it and a unit."""
+    (found,) = [
+        layer for told, layer in answer["layers"].items() if told.partition(" (")[0] == name
+    ]
+    return found
 
 
 def job(name, *, load=True, **parameters):

@@ -10,10 +10,27 @@ __all__ = ["open_layers_in_qgis"]
 
 _OPEN = """
 import json, os, sys
-from qgis.core import QgsApplication, QgsVectorLayer
+from qgis.core import (QgsApplication, QgsExpressionContextUtils, QgsRenderContext,
+                       QgsVectorLayer)
 app = QgsApplication([], False)
 app.initQgis()
 told = {}
+
+def count_unclassified(layer, features):
+    # Those for which the style has no symbol.
+    if layer.renderer() is None:
+        return None
+    context = QgsRenderContext()
+    context.expressionContext().appendScope(QgsExpressionContextUtils.layerScope(layer))
+    renderer = layer.renderer().clone()
+    renderer.startRender(context, layer.fields())
+    lost = 0
+    for one in features:
+        context.expressionContext().setFeature(one)
+        lost += renderer.symbolForFeature(one, context) is None
+    renderer.stopRender(context)
+    return lost
+
 for path in sys.argv[1:]:
     whole = QgsVectorLayer(path, "layer", "ogr")
     names = [one.split("!!::!!")[1] for one in whole.dataProvider().subLayers()]
@@ -28,6 +45,10 @@ for path in sys.argv[1:]:
             "crs": layer.crs().authid(),
             "kind": sorted({one.geometry().constGet().geometryType() for one in features
                             if one.hasGeometry()}),
+            "renderer": layer.renderer().type() if layer.renderer() else None,
+            "unclassified": count_unclassified(layer, features),
+            "legend": [one.label() for one in layer.renderer().legendSymbolItems()]
+                      if layer.renderer() else [],
             "fields": layer.fields().names(),
             "vertices": [row if row[2] == row[2] else [row[0], row[1], None] for row in rows],
         }

@@ -17,6 +17,9 @@ __all__ = ["PLUGIN", "ROOT", "drive", "make_environment", "require_qgis"]
 ROOT = Path(__file__).parents[2]
 PLUGIN = ROOT / "qgis"
 _DRIVER = Path(__file__).with_name("qgis_driver.py")
+_NOISE = ("Warning ", "ERROR ", "HDF5-DIAG")
+"""How lines begin that libraries print to the terminal from which QGIS was started."""
+
 _PATIENCE = 800
 """Seconds: the machine may be busy."""
 
@@ -63,4 +66,6 @@ def drive(folder, layers, jobs, **environment):
         env=make_environment(folder) | environment,
     )
     assert done.returncode == 0, done.stderr[-3000:]
+    noise = [line for line in done.stderr.splitlines() if line.startswith(_NOISE)]
+    assert noise == [], noise[:5]
     return json.loads(answers.read_text())

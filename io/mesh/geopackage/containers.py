@@ -14,6 +14,7 @@ from ....base.atomic import folder_beside, replacing_path
 from ....base.errors import WriteError
 from ....base.sentences import FILE
 from .schema import LAYERS, NO_CLOCK, RECORD, digest_lines
+from .styles import STYLES, has_foreign_styles, merge_styles
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -61,7 +62,8 @@ def adding_layers(path: Path, placing: Placing) -> Iterator[Path]:
                 with closing(_open(path)) as old, closing(sqlite3.connect(made)) as new:
                     layers = _list_layers(new)
                     _require_free(old, layers, placing, path)
-                    is_all = not placing.append and not _list_tables(old) - set(layers)
+                    others = _list_tables(old) - {*layers, STYLES}
+                    is_all = not placing.append and not others and not has_foreign_styles(old)
                 if is_all:
                     shutil.copyfile(made, beside)
                 else:
@@ -83,8 +85,10 @@ def _open(path: Path) -> sqlite3.Connection:
     return file
 
 
-def _list_layers(file: sqlite3.Connection) -> list[str]:
-    return [name for (name,) in file.execute("SELECT table_name FROM gpkg_contents")]
+def _list_layers(file: sqlite3.Connection, schema: str = "main") -> list[str]:
+    """Return the names of the layers; the table of their styles is none."""
+    found = file.execute(f"SELECT table_name FROM {schema}.gpkg_contents")
+    return [name for (name,) in found if name != STYLES]
 
 
 def _list_tables(file: sqlite3.Connection) -> set[str]:
@@ -151,7 +155,7 @@ def _merge(path: Path, made: Path, beside: Path, placing: Placing) -> None:
         file.execute("PRAGMA foreign_keys = OFF")
         file.execute("BEGIN")
         numbers = _add_references(file)
-        layers = [name for (name,) in file.execute("SELECT table_name FROM made.gpkg_contents")]
+        layers = _list_layers(file, "made")
         if RECORD in layers:
             layers = [*(name for name in layers if name != RECORD), RECORD]
         for layer in layers:
@@ -169,6 +173,7 @@ def _merge(path: Path, made: Path, beside: Path, placing: Placing) -> None:
             _add(file, layer, numbers)
         if RECORD in layers:
             _renew_digest(file)
+        merge_styles(file)
         file.execute("COMMIT")
         file.execute("DETACH made")
 

@@ -33,6 +33,7 @@ from .schema import (
     make_points,
     make_triangles,
 )
+from .styles import write_styles
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -79,7 +80,8 @@ def write(
     ``constrained``, of which bit 0 is that of the edge opposite ``a``), ``lines`` (kind, name and
     source), ``boundary`` (closed lines) and ``water`` (polygons with their elevation). The table
     ``tinsmith_tin`` holds the rest: the report, and what edits and undoing them need. Other layers
-    of a file that is there already stay as they are.
+    of a file that is there already stay as they are. ``layer_styles`` has the styles in which QGIS
+    draws these layers, triangles by elevation; styles that a user keeps there go first.
     """
     tin = require_tin(surface, format_name="a GeoPackage of a TIN")
     tell = progress or (lambda _: None)
@@ -113,6 +115,7 @@ def _write_content(file: sqlite3.Connection, tin: TIN, *, compact: bool) -> int:
     srs = _write_contents(file, tin, compact=compact)
     _write_lines(file, tin, srs)
     _write_record(file, tin)
+    write_styles(file, tin, [name for name in LAYERS if not (compact and name == "triangles")])
     if tin.attributes:
         _write_vertices_with_attributes(file, tin, srs)
     file.execute("COMMIT")

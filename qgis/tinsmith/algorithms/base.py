@@ -26,7 +26,13 @@ from ..icons import load_icon
 from ..inputs import Files, Found, Lines, Place, Surface
 from ..options import Option, describe
 from ..process import Failed, Speaker, run_program
-from ..results import load_file, style_on_loading
+from ..results import (
+    find_unit,
+    load_file,
+    name_layer,
+    rename_on_loading,
+    style_on_loading,
+)
 
 EXTRA = "EXTRA"
 LOAD = "LOAD"
@@ -51,6 +57,8 @@ class Run:
     context : QgsProcessingContext
     feedback : QgsProcessingFeedback
     files : Files
+    unit : str
+        That of elevations, as the last command told it.
     """
 
     def __init__(
@@ -66,6 +74,7 @@ class Run:
         self.context = context
         self.feedback = feedback
         self.files = Files(Path(folder))
+        self.unit = ""
         self._command = find_command()
         version = self._command.find_version()
         feedback.pushInfo(f"{version} ({self._command.path}, {self._command.origin})")
@@ -139,6 +148,7 @@ class Run:
         answer = run_program(words, speaker, self.feedback)
         self.feedback.setProgress(100)
         result: dict[str, Any] = json.loads(answer) if answer.strip() else {}
+        self.unit = find_unit(result)
         return result
 
 
@@ -255,7 +265,7 @@ class CommandAlgorithm(QgsProcessingAlgorithm):
         """Add a TIN as an output, and whether it is loaded."""
         help_text = (
             "UGRID and PLY keep the CRS and open as mesh layers; of a PLY with breaklines QGIS "
-            "colors the breaklines alone. A GeoPackage keeps everything that tinsmith knows."
+            "colors the breaklines alone. A GeoPackage keeps everything, with styles of its layers."
         )
         self.add_file_output("OUTPUT", words, MESH_FILES, help_text)
         self.add_loading("Load the result as a layer")
@@ -312,10 +322,13 @@ class CommandAlgorithm(QgsProcessingAlgorithm):
         root = QgsProcessingUtils.tempFolder()
         with tempfile.TemporaryDirectory(prefix="tinsmith-", dir=root) as folder:
             try:
-                given = self.name_choices(parameters)
-                return self.make(Run(self, given, context, feedback, folder))
+                run = Run(self, self.name_choices(parameters), context, feedback, folder)
+                outputs = self.make(run)
             except Failed as failed:
                 raise QgsProcessingException(str(failed)) from failed
+        for path in outputs.values():
+            rename_on_loading(str(path), run.unit, context)
+        return outputs
 
     def make(self, run: Run) -> dict[str, Any]:
         """Run the command; return the outputs."""
@@ -340,7 +353,7 @@ class CommandAlgorithm(QgsProcessingAlgorithm):
     def load_later(self, run: Run, path: str, name: str) -> None:
         """Have the output, a file, loaded once the run is over, if the user wants it."""
         if self.parameterAsBool(run.parameters, LOAD, run.context):
-            self._to_load.append((path, name, "OUTPUT"))
+            self._to_load.append((path, name_layer(path, name, run.unit), "OUTPUT"))
 
     def run_command(
         self, run: Run, *outputs: str, chosen: Sequence[str] = ()

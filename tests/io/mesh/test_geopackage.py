@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import sqlite3
+import xml.etree.ElementTree as ET
 from contextlib import closing
 
 import numpy as np
@@ -161,6 +162,45 @@ def test_reference_can_be_declared_where_there_is_none(path):
     ts.write(make_tin(crs=32616), path)
     with pytest.raises(ts.CrsError, match="another CRS"):
         ts.read(path, crs=32617)
+
+
+def list_styles(path):
+    query = "SELECT f_table_name, owner, useAsDefault FROM layer_styles ORDER BY f_table_name, id"
+    with closing(sqlite3.connect(path)) as file:
+        return file.execute(query).fetchall()
+
+
+def test_styles_are_written_anew_and_those_of_a_user_stay(path):
+    names = ["boundary", "lines", "triangles", "vertices", "water"]
+    ts.write(make_tin(), path)
+    assert list_styles(path) == [(name, "tinsmith", 1) for name in names]
+    keep = (
+        "INSERT INTO layer_styles (f_table_name, styleName, styleQML, useAsDefault, owner) "
+        "VALUES ('lines', 'mine', '<qgis/>', 1, 'me')"
+    )
+    change(path, keep)
+    for _ in range(2):
+        ts.write(make_tin(2), path)
+        rest = [(name, "tinsmith", 1) for name in names if name != "lines"]
+        assert sorted(list_styles(path)) == sorted(
+            [("lines", "me", 1), ("lines", "tinsmith", 0), *rest]
+        )
+    assert find_differences(make_tin(2), ts.read(path)) == []
+
+
+@pytest.mark.parametrize("span", [1e-9, 0.03, 1.0, 7.5, 119.0, 1e6])
+def test_classes_of_elevations_are_few_and_round(path, span):
+    rows = np.random.default_rng(3).random((40, 3)) * (9.0, 9.0, span) + (0.0, 0.0, 100.0)
+    ts.write(ts.triangulate(rows), path)
+    with closing(sqlite3.connect(path)) as file:
+        query = "SELECT styleQML FROM layer_styles WHERE f_table_name = 'triangles'"
+        (text,) = file.execute(query).fetchone()
+    ranges = list(ET.fromstring(text.partition(">")[2]).iter("range"))
+    assert 1 <= len(ranges) <= 12
+    limits = [float(one.get("upper")) for one in ranges][:-1]
+    assert limits == sorted(set(limits))
+    assert [float(one.get("lower")) for one in ranges[1:]] == limits
+    assert all(rows[:, 2].min() < one < rows[:, 2].max() for one in limits)
 
 
 # ------------------------------------------------------------------ changed and damaged files

@@ -244,6 +244,7 @@ def test_layers_of_a_whole_tin_are_what_gdal_reads(tmp_path):
         "boundary": "LineString Z",
         "water": "Polygon Z",
         "tinsmith_tin": None,
+        "layer_styles": None,
     }
     frames = {name: pyogrio.read_dataframe(path, layer=name) for name in list(layers)[:5]}
     assert {frame.crs.to_epsg() for frame in frames.values()} == {32616}

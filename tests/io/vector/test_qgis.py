@@ -106,6 +106,30 @@ def test_layers_of_a_whole_tin(seen):
     assert elevations <= set(tin.points[:, 2].tolist())
 
 
+def test_layers_of_a_tin_have_styles_for_every_feature(seen):
+    (tin, _, _), told = seen
+    layers = told["whole.gpkg"]
+    kinds = {name: layer["renderer"] for name, layer in layers.items()}
+    assert kinds["triangles"] == "graduatedSymbol"
+    assert kinds["lines"] == "categorizedSymbol"
+    assert not any(layer["unclassified"] for layer in layers.values())
+    legend = layers["triangles"]["legend"]
+    assert 4 <= len(legend) <= 12
+    low, high = float(legend[0].split()[1]), float(legend[-1].split()[1])
+    assert tin.points[:, 2].min() < low < high < tin.points[:, 2].max()
+    assert legend[0].startswith("below")
+    assert legend[-1].startswith("above")
+
+
+def test_a_level_tin_has_one_class(tmp_path):
+    points = CORNER + np.array([[0, 0, 0], [5, 0, 0], [0, 5, 0]])
+    tin = ts.triangulate(points, crs=UTM, elevation_unit="ft")
+    path = ts.write(tin, tmp_path / "level.gpkg")
+    layers = open_layers_in_qgis([path], tmp_path)[path.name]
+    assert layers["triangles"]["legend"] == ["elevation (ft)"]
+    assert layers["triangles"]["unclassified"] == 0
+
+
 def test_a_multipatch_has_every_triangle(seen):
     (tin, _, _), told = seen
     ((_, layer),) = told["patch.shp"].items()
