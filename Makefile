@@ -57,6 +57,7 @@ check: $(READY) $(TREE) ## Lint, formatting, types, import contract
 	$(BIN)/ruff format --check .
 	cd $(TREE) && ../../$(BIN)/mypy --config-file ../../pyproject.toml
 	cd qgis && ../$(BIN)/mypy --config-file ../pyproject.toml --allow-subclassing-any
+	cd blender && ../$(BIN)/mypy --config-file ../pyproject.toml --allow-subclassing-any
 	cd $(TREE) && PYTHONPATH=. ../../$(BIN)/lint-imports --config ../../pyproject.toml
 
 # The folders as the one package that they are once installed. Tools that look for modules on disk
@@ -82,6 +83,10 @@ gallery: $(READY) ## Draw the pictures of docs/gallery.md anew
 .PHONY: qgis-plugin
 qgis-plugin: ## Pack the QGIS plugin as a zip into build/
 	@$(PYTHON) qgis/make_plugin.py
+
+.PHONY: blender-addon
+blender-addon: ## Pack the Blender add-on as a zip into build/
+	@$(PYTHON) blender/make_addon.py
 
 .PHONY: page
 page: ## Build the code of the 3D page anew from its sources; needs Node.js

@@ -233,7 +233,9 @@ LARGER_FOLDERS = {
 
 def test_folders_can_be_taken_in_at_a_glance():
     entries = {}
-    tracked = run("git", "ls-files", "-z", "tin", "io", "terrain", "src", "qgis", "packaging")
+    tracked = run(
+        "git", "ls-files", "-z", "tin", "io", "terrain", "src", "qgis", "blender", "packaging"
+    )
     for path in map(PurePosixPath, tracked.stdout.split("\0")[:-1]):
         for entry, folder in zip((path, *path.parents), path.parents, strict=False):
             entries.setdefault(str(folder), set()).add(entry.name)
@@ -280,7 +282,7 @@ def test_only_packages_list_their_names():
 ROOT_ENTRIES = """
 .ci .clang-format .dockerignore .github .gitignore .pre-commit-config.yaml ARCHITECTURE.md
 CHANGELOG.md CMakeLists.txt CONTRIBUTING.md LICENSE Makefile README.md SECURITY.md benchmarks
-constraints.txt docs io packaging pyproject.toml qgis sample_data src terrain tests tin
+blender constraints.txt docs io packaging pyproject.toml qgis sample_data src terrain tests tin
 """
 
 
@@ -296,7 +298,7 @@ def test_the_architecture_fits_a_minute():
 
 
 MOST_LINES = 60
-FOLDERS = ("tin", "io", "terrain", "src", "qgis", "tests", "benchmarks", "sample_data")
+FOLDERS = ("tin", "io", "terrain", "src", "qgis", "blender", "tests", "benchmarks", "sample_data")
 
 
 def measure_python_functions(path):

@@ -1,8 +1,9 @@
 """PLY: meshes and point clouds, written so that QGIS reads them and nothing of a TIN is lost.
 
 Written is binary little-endian with double coordinates, the face list ``vertex_indices``, and the
-CRS in a header line ``comment crs: EPSG:32616`` (WKT where there is no code). A line ``comment
-elevation unit: US survey foot`` keeps the unit of elevations where it is known. Constrained edges
+CRS in a header line ``comment crs: EPSG:32616`` (WKT where there is no code), with its unit for
+programs that know no CRS: ``comment horizontal unit: metre``. A line ``comment elevation unit: US
+survey foot`` keeps the unit of elevations where it is known. Constrained edges
 and the lines that they are of are edges of the file (see ``lines.py``). Files of earlier versions,
 which are read too, have the face properties ``constrained_0`` to ``constrained_2``, 1 where the
 edge opposite that corner is constrained; they are written still where an edge is constrained on
@@ -261,6 +262,9 @@ def _format_header(
     lines = ["ply", "format binary_little_endian 1.0"]
     if surface.crs is not None:
         lines.append(f"comment crs: {common.format_crs(surface.crs)}")
+        along = surface.crs.horizontal_unit
+        if along.metres is not None:
+            lines.append(f"comment horizontal unit: {along.name}")
     unit = surface.elevation_unit
     if unit is not None and unit.text:
         lines.append(f"comment elevation unit: {unit.text}")
