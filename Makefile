@@ -88,6 +88,10 @@ qgis-plugin: ## Pack the QGIS plugin as a zip into build/
 blender-addon: ## Pack the Blender add-on as a zip into build/
 	@$(PYTHON) blender/make_addon.py
 
+.PHONY: web
+web: ## Build the page that triangulates a table in the browser into build/; needs Emscripten
+	@$(PYTHON) web/make_page.py
+
 .PHONY: page
 page: ## Build the code of the 3D page anew from its sources; needs Node.js
 	cd terrain/viewer/page && npm ci --silent && npm run --silent check && npm run --silent build
@@ -178,7 +182,7 @@ mutants: $(READY) ## Change the code at random and list what the tests miss: MUT
 format: $(READY) ## Format the code
 	$(BIN)/ruff format .
 	$(BIN)/ruff check --fix .
-	$(BIN)/clang-format -i $$(git ls-files "t*/cpp/*.hpp" "t*/cpp/*.inc" "t*/cpp/*.cpp" "tests/cpp/*.cpp" "benchmarks/compiled/*.cpp" "benchmarks/compiled/*.hpp")
+	$(BIN)/clang-format -i $$(git ls-files "t*/cpp/*.hpp" "t*/cpp/*.inc" "t*/cpp/*.cpp" "web/*.cpp" "tests/cpp/*.cpp" "benchmarks/compiled/*.cpp" "benchmarks/compiled/*.hpp")
 
 clean: ## Remove what was built
 	rm -rf $(VENV) build demo

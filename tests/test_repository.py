@@ -282,7 +282,7 @@ def test_only_packages_list_their_names():
 ROOT_ENTRIES = """
 .ci .clang-format .dockerignore .github .gitignore .pre-commit-config.yaml ARCHITECTURE.md
 CHANGELOG.md CMakeLists.txt CONTRIBUTING.md LICENSE Makefile README.md SECURITY.md benchmarks
-blender constraints.txt docs io packaging pyproject.toml qgis sample_data src terrain tests tin
+blender constraints.txt docs io packaging pyproject.toml qgis sample_data src terrain tests tin web
 """
 
 
@@ -298,7 +298,18 @@ def test_the_architecture_fits_a_minute():
 
 
 MOST_LINES = 60
-FOLDERS = ("tin", "io", "terrain", "src", "qgis", "blender", "tests", "benchmarks", "sample_data")
+FOLDERS = (
+    "tin",
+    "io",
+    "terrain",
+    "src",
+    "qgis",
+    "blender",
+    "web",
+    "tests",
+    "benchmarks",
+    "sample_data",
+)
 
 
 def measure_python_functions(path):

@@ -17,7 +17,7 @@ _PATIENCE = 500_000
 
 
 @contextmanager
-def open_page(path, *, webgl=True, **context_options):
+def open_page(path, *, webgl=True, ready="window.terrain", **context_options):
     """Open a page from a file; an error or a warning on its console fails the test."""
     said = []
     options = {"offline": True, "viewport": {"width": 1200, "height": 800}, **context_options}
@@ -29,7 +29,7 @@ def open_page(path, *, webgl=True, **context_options):
         page.on("console", lambda line: said.append(line.text) if line.type == "error" else None)
         page.on("request", lambda request: _note_request(request.url, said))
         page.goto(path.as_uri())
-        page.evaluate("window.terrain.then(() => true)")
+        page.evaluate(f"{ready}.then(() => true)")
         yield page
     finally:
         context.close()
