@@ -17,6 +17,7 @@ SOURCE = HERE / "triangulate.cpp"
 FUNCTIONS = ("allocate_rows", "free_rows", "clean_rows", "triangulate", "corners", "kept_rows")
 OPTIONS = (
     *("-std=c++17", "-O3", "-ffp-contract=off", "-fwasm-exceptions"),
+    "-Wno-bitwise-conditional-parentheses",
     *("--no-entry", "-sSTANDALONE_WASM=1"),
     *("-sALLOW_MEMORY_GROWTH=1", "-sMAXIMUM_MEMORY=4GB"),
     "-sEXPORTED_FUNCTIONS=" + ",".join(f"_{name}" for name in FUNCTIONS),

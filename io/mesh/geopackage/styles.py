@@ -14,7 +14,7 @@ from .schema import NO_CLOCK
 
 if TYPE_CHECKING:
     import sqlite3
-    from collections.abc import Iterable, Sequence
+    from collections.abc import Callable, Iterable, Sequence
 
     from ....tin import TIN
 
@@ -62,7 +62,7 @@ _Color = tuple[int, int, int]
 
 def write_styles(file: sqlite3.Connection, tin: TIN, layers: Iterable[str]) -> None:
     """Write the table, with a row for each of these layers."""
-    made = {
+    made: dict[str, Callable[[TIN], str]] = {
         "triangles": _style_triangles,
         "lines": _style_lines,
         "boundary": lambda _: _style_all(_draw_line(_BLACK, 0.5)),
