@@ -196,7 +196,7 @@ def make_files(folder):
     return tin
 
 
-@pytest.mark.slow
+@pytest.mark.proof
 @pytest.mark.timeout(400)
 def test_imports_in_blender(tmp_path):
     tin = make_files(tmp_path)

@@ -12,8 +12,7 @@ from .ground import GroundAlgorithm
 from .inspect import InspectAlgorithm
 from .install import InstallAlgorithm
 from .paste import ClipAlgorithm, CoregisterAlgorithm, MergeAlgorithm, PasteAlgorithm
-from .plan import PlanAlgorithm
-from .profile import ProfileAlgorithm
+from .profile import PlanAlgorithm, ProfileAlgorithm
 from .raster import RasterAlgorithm
 from .refine import RefineAlgorithm
 from .sections import SectionsAlgorithm, StakeoutAlgorithm
