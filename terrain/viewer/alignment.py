@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from pathlib import PurePath
 from typing import TYPE_CHECKING, NamedTuple
 
 from ...base.checks import require_tin
@@ -16,7 +17,7 @@ if TYPE_CHECKING:
     from ...base.crs import CRS, Unit
     from ...tin import Survey
 
-_ALLOWED = "a TIN, or a mapping of names to TINs with one at least"
+_ALLOWED = "a TIN, or a sequence of TINs or a mapping of names to TINs with one at least"
 _ALONE = "Surface"
 
 
@@ -47,13 +48,13 @@ class Aligned(NamedTuple):
         )
 
 
-def align(given: TIN | Mapping[str, TIN], survey: Survey | None) -> Aligned:
+def align(given: TIN | Sequence[TIN] | Mapping[str, TIN], survey: Survey | None) -> Aligned:
     """Bring surfaces and points together, elevations in the unit of the first that has one.
 
     Raises OptionError if there is no surface. Raises PointsError if one is no TIN. Raises CrsError
     as :func:`tinsmith.base.georeference.agree` says.
     """
-    named = given if isinstance(given, Mapping) else {_ALONE: given}
+    named = given if isinstance(given, Mapping) else _name_surfaces(given)
     if not named:
         raise OptionError("tin", given, _ALLOWED)
     for one in named.values():
@@ -68,6 +69,20 @@ def align(given: TIN | Mapping[str, TIN], survey: Survey | None) -> Aligned:
     }
     labelled = None if survey is None else survey.points * (1.0, 1.0, found.factors[-1])
     return Aligned(surfaces, labelled, found.notes)
+
+
+def _name_surfaces(given: TIN | Sequence[TIN]) -> dict[str, TIN]:
+    """Name surfaces by their files, or by their numbers where files do not tell all apart."""
+    if isinstance(given, TIN) or not isinstance(given, Sequence):
+        return {_ALONE: given}
+    for one in given:
+        require_tin(one)
+    if len(given) == 1:
+        return {_ALONE: given[0]}
+    names = [PurePath(tin.source).stem.replace("_", " ") for tin in given]
+    if "" in names or len({*names}) < len(names):
+        names = [f"{_ALONE} {number}" for number in range(1, len(given) + 1)]
+    return dict(zip(names, given, strict=True))
 
 
 def _convert(tin: TIN, factor: float, crs: CRS | None, unit: Unit | None) -> TIN:

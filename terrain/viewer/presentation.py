@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from functools import cached_property
 from html import escape
+from itertools import pairwise
 from pathlib import Path
 from typing import TYPE_CHECKING, Unpack, overload
 
@@ -40,6 +41,7 @@ PREVIEW_SUFFIXES = (*PICTURE_SUFFIXES, *PAGE_SUFFIXES)
 """File name endings of what can be written."""
 
 _COMPARED = "Cut and fill"
+_BASIS = "{} minus {}, on the overlay of both triangulations; rounded as the coordinates are."
 _FRAME_HEIGHT = 560
 
 
@@ -181,7 +183,7 @@ class Preview:
         """
         tins = list(self._surfaces.values())
         ground = find_ground(tins[-1])
-        surfaces, changes = _add_difference(self._surfaces)
+        surfaces, changes, basis = _add_differences(self._surfaces)
         points, survey = self._aligned.labelled, self._survey
         labels = None if points is None or survey is None else find_labels(points, survey)
         content = describe_page(
@@ -192,6 +194,7 @@ class Preview:
             changes=changes,
             labels=labels,
             notes=(*self.notes, *(self._ortho.notes if self._ortho else ())),
+            basis=basis,
             ortho=self._ortho,
         )
         return make_document(content)
@@ -225,7 +228,7 @@ class Preview:
 
 @overload
 def preview(
-    tin: TIN | Mapping[str, TIN],
+    tin: TIN | Sequence[TIN] | Mapping[str, TIN],
     *,
     output: None = None,
     survey: Survey | None = None,
@@ -236,7 +239,7 @@ def preview(
 
 @overload
 def preview(
-    tin: TIN | Mapping[str, TIN],
+    tin: TIN | Sequence[TIN] | Mapping[str, TIN],
     *,
     output: str | os.PathLike[str],
     survey: Survey | None = None,
@@ -247,7 +250,7 @@ def preview(
 
 @product
 def preview(
-    tin: TIN | Mapping[str, TIN],
+    tin: TIN | Sequence[TIN] | Mapping[str, TIN],
     *,
     output: str | os.PathLike[str] | None = None,
     survey: Survey | None = None,
@@ -258,9 +261,10 @@ def preview(
 
     Parameters
     ----------
-    tin : TIN or mapping of str to TIN
-        One surface, or several by name in one CRS for a page, the existing ground first; of two
-        the page shows cut and fill too. Elevations are shown in the unit of the first.
+    tin : TIN, or sequence or mapping of str to TIN
+        One surface, or several in one CRS for a page, the earliest or the existing ground first:
+        the page has a slider between two of them, and shows cut and fill from each to the next.
+        Those of a sequence are named by their files. Elevations are shown in the unit of the first.
     output : path, optional
         File to write at once: a page (.html) that turns in any browser, offline, or a picture
         (.png, .jpg, .jpeg, .tif, .tiff). Default: write nothing, and return a Preview.
@@ -360,13 +364,29 @@ def preview(
     return made if output is None else made.save(output)
 
 
-def _add_difference(
+def _add_differences(
     surfaces: Mapping[str, TIN],
-) -> tuple[dict[str, TIN], dict[str, Float64Array]]:
-    """Return the surfaces and, of two, the second with cut and fill at its vertices."""
-    if len(surfaces) != 2:
-        return dict(surfaces), {}
-    first, second = surfaces.values()
+) -> tuple[dict[str, TIN], dict[str, Float64Array], str]:
+    """Return the surfaces, cut and fill from each to the next, and how these were computed."""
+    shown, changes = dict(surfaces), {}
+    pairs = [*pairwise(surfaces.items())]
+    for (first_name, first), (second_name, second) in pairs:
+        words = "" if len(pairs) == 1 else f", {first_name} to {second_name}"
+        name = _find_free_name(f"{_COMPARED}{words}", shown)
+        shown[name], changes[name] = _compare(first, second)
+    one = _BASIS.format(*(name for name, _ in reversed(pairs[0]))) if len(pairs) == 1 else ""
+    return shown, changes, one or (_BASIS.format("Each surface", "the one before") if pairs else "")
+
+
+def _find_free_name(name: str, taken: Mapping[str, TIN]) -> str:
+    """Return a name that no surface has."""
+    while name in taken:
+        name = f"{name} *"
+    return name
+
+
+def _compare(first: TIN, second: TIN) -> tuple[TIN, Float64Array]:
+    """Return the second surface on the overlay with the first, and cut and fill at its vertices."""
     change = difference(first, second).tin
     places = np.array(change.points)
     differences = places[:, 2].copy()
@@ -374,7 +394,7 @@ def _add_difference(
     shown = TIN.from_triangles(
         places, change.triangles, crs=second.crs, elevation_unit=second.elevation_unit
     )
-    return {**surfaces, _COMPARED: shown}, {_COMPARED: differences}
+    return shown, differences
 
 
 def _require_path(output: str | os.PathLike[str]) -> Path:

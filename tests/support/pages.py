@@ -3,11 +3,16 @@
 from __future__ import annotations
 
 import atexit
+import base64
 import hashlib
+import json
+import re
 import shutil
+import zlib
 from contextlib import contextmanager
 from functools import cache
 
+import numpy as np
 import pytest
 
 _WEBGL = ("--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--ignore-gpu-blocklist")
@@ -63,10 +68,25 @@ def _note_request(url, said):
         said.append(f"asked for {url}")
 
 
+def unpack(packed):
+    """The other side of packing, in numpy and as plainly as can be."""
+    count = packed["rows"] * packed["columns"]
+    data = zlib.decompress(base64.b64decode(packed["data"])) if packed["planes"] else b""
+    planes = np.frombuffer(data, np.uint8).reshape(packed["planes"], count).astype(np.int64)
+    zigzag = sum((plane << (8 * k) for k, plane in enumerate(planes)), np.zeros(count, np.int64))
+    return ((zigzag >> 1) ^ -(zigzag & 1)).reshape(packed["rows"], packed["columns"])
+
+
+def read_content(page):
+    """Return what a page is given."""
+    found = re.search(r'<script type="application/json" id="terrain">(.*?)</script>', page, re.S)
+    return json.loads(found[1])
+
+
 def digest_sources(folder):
     """Return the digest of all from which the bundle is made."""
     digest = hashlib.sha256()
-    for path in sorted([*folder.glob("src/*.ts"), folder / "package-lock.json"]):
+    for path in sorted([*folder.glob("src/**/*.ts"), folder / "package-lock.json"]):
         digest.update(path.name.encode() + b"\0" + path.read_bytes())
     return digest.hexdigest()
 

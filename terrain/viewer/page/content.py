@@ -89,12 +89,14 @@ def describe_page(
     changes: Mapping[str, Float64Array],
     labels: Labels | None,
     notes: Sequence[str],
+    basis: str = "",
     ortho: Ortho | None = None,
 ) -> dict[str, Any]:
     """Return what a page needs, ready for JSON.
 
     Surfaces are named, all in one CRS, at least one; ``changes`` are cut and fill at the vertices
-    of some of them, (n,); ``notes`` tell what had to be assumed; the ortho is draped over all.
+    of some of them, (n,), and ``basis`` says how they were computed; ``notes`` tell what had to be
+    assumed; the ortho is draped over all.
     """
     steps = _choose_steps(list(surfaces.values()), ground)
     described = [
@@ -103,8 +105,13 @@ def describe_page(
     if labels is not None:
         places = pack_rows(steps.round(labels.points))
         texts = list(labels.texts)
-        described[-1]["labels"] = {"title": "Points", "places": places, "texts": texts}
-    last = list(surfaces.values())[-1]
+        described[len(surfaces) - len(changes) - 1]["labels"] = {
+            "title": "Points",
+            "places": places,
+            "texts": texts,
+        }
+    # Surfaces of cut and fill stand behind the others, which they repeat.
+    last = [tin for name, tin in surfaces.items() if name not in changes][-1]
     counts = f"{len(last.points):,} points, {counted(len(last.triangles), 'triangle')}"
     return {
         "title": title,
@@ -126,6 +133,7 @@ def describe_page(
         ],
         "elevationScale": float(ground.scale[2]),
         **start._asdict(),
+        "basis": basis,
         "ramps": _make_ramps(),
         "colors": palette.PAGE_COLORS,
         "ortho": None if ortho is None else _describe_ortho(ortho, steps),

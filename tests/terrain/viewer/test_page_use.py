@@ -21,6 +21,18 @@ STATE = """window.terrain.then((p) => ({
   readout: p.tool.readout.textContent }))"""
 
 
+def wait_for_picture(page):
+    """Wait until the view has its new size and is drawn."""
+    page.evaluate("""new Promise((done) => requestAnimationFrame(() =>
+        requestAnimationFrame(() => requestAnimationFrame(done))))""")
+
+
+def place(page, x, y):
+    """Return the pixel of a place in the view, given by shares of its width and height."""
+    box = page.locator("#view").bounding_box()
+    return box["x"] + x * box["width"], box["y"] + y * box["height"]
+
+
 @pytest.fixture(scope="module")
 def saved(tmp_path_factory):
     folder = tmp_path_factory.mktemp("use")
@@ -44,11 +56,11 @@ def test_the_order_of_the_focus_is_that_of_the_page(page):
     for _ in range(30):
         page.keyboard.press("Tab")
         order.append(page.evaluate("document.activeElement.id"))
-        if order[-1] == "theme":
+        if order[-1] == "area":
             break
     wanted = [
-        *("view", "fold", "surface-0", "tint", "exaggeration", "contours", "interval", "shading"),
-        *("edges", "above", "start", "distance", "area", "picture", "theme"),
+        *("view", "fold", "surface-0", "comparing", "tint", "exaggeration", "contours", "interval"),
+        *("shading", "edges", "picture", "link", "theme", "above", "start", "distance", "area"),
     ]
     assert [one for one in order if one in wanted] == wanted
 
@@ -68,18 +80,78 @@ def test_what_has_the_focus_is_seen(page):
 
 
 def test_a_distance_by_keys_alone(page):
+    """Space marks the place in the middle, Enter ends, Escape cancels."""
     page.focus("#distance")
     page.keyboard.press("Enter")
-    page.focus("#view")
-    page.keyboard.press("Enter")
+    assert page.evaluate("document.activeElement.id") == "view"
+    assert "Space marks" in page.inner_text("#told")
+    wait_for_picture(page)
+    page.keyboard.press(" ")
     page.keyboard.press("Shift+ArrowRight")
+    page.keyboard.press(" ")
+    found = r"Distance \d+\.\d+ m, along the ground .* rise .*, grade"
+    assert re.match(found, page.inner_text("#result"))
+    assert re.match(f"2 places. {found}", page.inner_text("#told"))
+    page.keyboard.press("Backspace")
+    assert page.evaluate(STATE)["marked"] == 1
+    page.keyboard.press(" ")
     page.keyboard.press("Enter")
-    assert re.match(r"Distance \d+\.\d+ m, along the ground", page.inner_text("#measured"))
+    assert "Measurement ended. Distance" in page.inner_text("#told")
+    page.keyboard.press("Shift+ArrowRight")
+    page.keyboard.press(" ")  # reads
+    assert page.evaluate(STATE)["marked"] == 2
+    assert "Easting" in page.inner_text("#readout")
+    assert page.is_hidden("#done")
     page.keyboard.press("Escape")
     assert page.is_hidden("#measured")
     page.keyboard.press("Enter")
     assert "Easting" in page.inner_text("#readout")
     page.keyboard.press("h")
+
+
+def test_enter_ends_a_measurement_of_the_mouse(page):
+    page.click("#area")
+    wait_for_picture(page)
+    for x, y in ((0.4, 0.5), (0.6, 0.5), (0.5, 0.6)):
+        page.mouse.click(*place(page, x, y))
+    page.keyboard.press("Enter")
+    page.mouse.click(*place(page, 0.45, 0.45))
+    assert page.evaluate(STATE)["marked"] == 3
+    assert page.inner_text("#result").startswith("Area ")
+    page.focus("#clear")
+    page.keyboard.press("Escape")
+    assert page.evaluate("document.activeElement.id") == "view"
+    page.click("#distance")
+    wait_for_picture(page)
+    page.mouse.click(*place(page, 0.4, 0.5))
+    page.mouse.dblclick(*place(page, 0.6, 0.5))
+    assert page.evaluate(STATE)["marked"] == 2
+    assert page.is_hidden("#done")
+    page.click("#clear")
+
+
+def test_the_view_is_told_once_it_rests(page):
+    page.focus("#view")
+    page.keyboard.press("t")
+    page.keyboard.press("ArrowDown")
+    page.evaluate("""new Promise((done) => {
+      const told = document.getElementById("told");
+      const look = () => told.textContent.startsWith("Seen") ? done() : setTimeout(look, 50);
+      look(); })""")
+    assert re.fullmatch(
+        r"Seen from the south, 8\d degrees above the horizon\.", page.inner_text("#told")
+    )
+    assert re.match(r"Elevations from [\d.]+ to [\d.]+ m; ", page.text_content("#extent"))
+    assert page.get_attribute("#view", "aria-describedby") == "extent"
+    page.keyboard.press("h")
+
+
+def test_nothing_moves_by_itself(saved):
+    with open_page(saved, reduced_motion="reduce") as page:
+        assert page.evaluate("document.getAnimations().length") == 0
+        before = page.evaluate(STATE)
+        page.wait_for_timeout(300)
+        assert page.evaluate(STATE) == before
 
 
 def test_keys_zoom(page):
@@ -219,11 +291,13 @@ def test_a_tap_reads_a_place(touched):
 def test_taps_measure_and_two_fingers_do_not(touched):
     page, fingers = touched
     page.evaluate("window.terrain.then((p) => p.tool.choose('distance'))")
-    fingers.drag(((380, 450), (380, 450)), steps=1)
-    fingers.drag(((300, 500), (300, 500)), ((400, 500), (440, 500)))
-    fingers.drag(((300, 450), (360, 450)))
+    wait_for_picture(page)
+    middle, right = place(page, 0.45, 0.5), place(page, 0.6, 0.5)
+    fingers.drag((middle, middle), steps=1)
+    fingers.drag((place(page, 0.4, 0.6), place(page, 0.4, 0.6)), (right, place(page, 0.65, 0.5)))
+    fingers.drag((middle, right))
     assert page.evaluate(STATE)["marked"] == 1
-    fingers.drag(((430, 470), (430, 470)), steps=1)
+    fingers.drag((place(page, 0.55, 0.52), place(page, 0.55, 0.52)), steps=1)
     assert page.evaluate(STATE)["marked"] == 2
 
 
@@ -235,7 +309,9 @@ def test_the_saved_picture_has_title_legend_and_arrow(page, tmp_path):
     text = page.evaluate("window.terrain.then((p) => { p.legend.setTint('elevation');"
                          " return p.furniture.takePicture(); })")  # fmt: skip
     picture = np.asarray(pil.open(io.BytesIO(base64.b64decode(text.partition(",")[2]))))[..., :3]
-    assert picture.shape[:2] == (800, 1200)
+    box = page.locator("#view").bounding_box()
+    height, width = picture.shape[:2]
+    assert (height, width) == (round(box["height"]), round(box["width"]))
     paper = picture[400, 2].astype(int)
 
     def inked(top, bottom, left, right):
@@ -243,9 +319,9 @@ def test_the_saved_picture_has_title_legend_and_arrow(page, tmp_path):
         return (np.abs(part - paper).max(axis=2) > 60).mean()
 
     assert inked(14, 40, 10, 160) > 0.03  # title
-    assert inked(756, 770, 976, 1184) > 0.5  # ramp of the legend
-    assert inked(10, 60, 1140, 1180) > 0.05  # north arrow
-    assert inked(770, 790, 16, 60) > 0.02  # scale bar
+    assert inked(height - 44, height - 32, width - 224, width - 16) > 0.5  # ramp of the legend
+    assert inked(10, 60, width - 60, width - 20) > 0.05  # north arrow
+    assert inked(height - 30, height - 10, 16, 60) > 0.02  # scale bar
 
 
 def test_the_picture_is_offered_as_a_file(page):

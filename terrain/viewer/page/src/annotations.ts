@@ -68,12 +68,53 @@ export function drawMeasured(
   pen.lineWidth = 2.5;
   const ring = closed && marked.length > 2 ? [...marked, marked[0]] : marked;
   for (let k = 0; k + 1 < ring.length; k += 1) drawAlong(pen, scene, ring[k], ring[k + 1]);
+  drawPlaces(pen, scene, marked);
+}
+
+/** Draw the places that were picked on lines of the surface, and the way between them. */
+export function drawRoute(
+  pen: CanvasRenderingContext2D,
+  scene: TerrainScene,
+  marked: Marked[],
+  path: Marked[],
+  color: string,
+): void {
+  pen.strokeStyle = color;
+  pen.fillStyle = color;
+  pen.lineWidth = 4;
+  pen.beginPath();
+  let isDown = false;
+  for (const { hit } of path) {
+    const at = scene.project(hit.x, hit.y, hit.z);
+    if (at !== null) pen[isDown ? "lineTo" : "moveTo"](at[0], at[1]);
+    isDown = at !== null;
+  }
+  pen.stroke();
+  drawPlaces(pen, scene, marked);
+}
+
+function drawPlaces(pen: CanvasRenderingContext2D, scene: TerrainScene, marked: Marked[]): void {
   for (const { hit } of marked) {
     const at = scene.project(hit.x, hit.y, hit.z);
     if (at === null) continue;
     pen.beginPath();
     pen.arc(at[0], at[1], 4.5, 0, 2 * Math.PI);
     pen.fill();
+  }
+}
+
+/** Draw a cross in the middle of the view: where the keys read and mark. */
+export function drawCross(pen: CanvasRenderingContext2D, view: HTMLElement, ink: string, halo: string): void {
+  const [x, y] = [view.clientWidth / 2, view.clientHeight / 2];
+  for (const [color, width] of [[halo, 4], [ink, 1.5]] as const) {
+    pen.strokeStyle = color;
+    pen.lineWidth = width;
+    pen.beginPath();
+    for (const [dx, dy] of [[1, 0], [-1, 0], [0, 1], [0, -1]]) {
+      pen.moveTo(x + 4 * dx, y + 4 * dy);
+      pen.lineTo(x + 12 * dx, y + 12 * dy);
+    }
+    pen.stroke();
   }
 }
 

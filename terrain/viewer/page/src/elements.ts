@@ -45,3 +45,21 @@ export function makeSwitch(
   label.append(words);
   return label;
 }
+
+/** Say words to a screen reader; they are not seen. */
+export function tell(words: string): void {
+  find<HTMLElement>("told").textContent = words;
+}
+
+/** Whether the screen is that of a phone: the same as in the style sheet. */
+export function isSmallScreen(): boolean {
+  return matchMedia("(max-width: 760px), (max-height: 500px)").matches;
+}
+
+/** Offer a text or an address as a file, by the title of the page and a suffix. */
+export function offerFile(title: string, suffix: string, address: string): void {
+  const link = document.createElement("a");
+  link.download = `${title.replace(/[^\p{L}\p{N} _-]+/gu, "").slice(0, 80) || "terrain"}${suffix}`;
+  link.href = address;
+  link.click();
+}

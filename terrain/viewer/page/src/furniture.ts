@@ -1,12 +1,12 @@
 /** Furniture of the map: labels, scale bar, north arrow, and the picture of them all. */
 
-import { chooseBar, drawLabels, drawLegend, drawMeasured, drawNorth } from "./annotations";
-import { find } from "./elements";
+import { chooseBar, drawCross, drawLabels, drawLegend, drawMeasured, drawNorth, drawRoute } from "./annotations";
+import { find, offerFile } from "./elements";
 import type { Legend } from "./legend";
 import type { Payload } from "./payload";
 import type { TerrainScene } from "./scene";
 import type { Theme } from "./theme";
-import type { Tool } from "./tool";
+import type { Tool } from "./measure/tool";
 
 /** What is drawn over the 3D view, each time that it is drawn. */
 export class Furniture {
@@ -21,7 +21,7 @@ export class Furniture {
     private readonly legend: Legend,
     private readonly tool: Tool,
   ) {
-    scene.drawn = () => this.annotate();
+    scene.drawn.push(() => this.annotate());
     find<HTMLElement>("picture").addEventListener("click", () => this.savePicture());
     new ResizeObserver(() => this.resize()).observe(scene.canvas);
     this.resize();
@@ -44,18 +44,18 @@ export class Furniture {
     pen.clearRect(0, 0, this.scene.canvas.clientWidth, this.scene.canvas.clientHeight);
     const { ink, halo } = this.theme.colors;
     drawLabels(pen, this.scene, ink, halo);
-    drawMeasured(pen, this.scene, this.tool.marked, this.tool.tool === "area", this.payload.colors.measured);
+    const { measured } = this.payload.colors;
+    if (this.tool.tool === "along") drawRoute(pen, this.scene, this.tool.marked, this.tool.path, measured);
+    else drawMeasured(pen, this.scene, this.tool.marked, this.tool.tool === "area", measured);
+    if (this.scene.canvas.matches(":focus-visible")) drawCross(pen, this.scene.canvas, ink, halo);
     this.north.querySelector("g")!.setAttribute("transform", `rotate(${-this.scene.heading})`);
     const [length, pixels] = chooseBar(this.scene.unitsPerPixel, 140);
-        this.bar.querySelector("span")!.textContent = `${Number(length.toPrecision(6))} ${this.payload.units.horizontal}`.trim();
+    this.bar.querySelector("span")!.textContent = `${Number(length.toPrecision(6))} ${this.payload.units.horizontal}`.trim();
     this.bar.querySelector("i")!.style.width = `${pixels}px`;
   }
 
   private savePicture(): void {
-    const link = document.createElement("a");
-    link.download = `${this.payload.title.replace(/[^\p{L}\p{N} _-]+/gu, "").slice(0, 80) || "terrain"}.png`;
-    link.href = this.takePicture();
-    link.click();
+    offerFile(this.payload.title, ".png", this.takePicture());
   }
 
   /** Return the present view with its annotations as a PNG in a data URL. */
@@ -72,7 +72,7 @@ export class Furniture {
     pen.font = "600 20px system-ui, sans-serif";
     pen.fillText(this.payload.title, 16, 32, this.scene.canvas.clientWidth - 32);
     pen.font = "14px system-ui, sans-serif";
-        const width = this.bar.querySelector("i")!.getBoundingClientRect().width;
+    const width = this.bar.querySelector("i")!.getBoundingClientRect().width;
     pen.fillRect(16, this.scene.canvas.clientHeight - 24, width, 3);
     pen.fillText(`${this.bar.querySelector("span")!.textContent ?? ""}, ${this.payload.crs}`, 16, this.scene.canvas.clientHeight - 32);
     if (!this.legend.box.hidden) drawLegend(pen, this.legend.box, this.scene.canvas);

@@ -20,6 +20,8 @@ export class Legend {
   readonly box = find<HTMLElement>("legend");
   private readonly choice = find<HTMLSelectElement>("tint");
   tint: Tint = "elevation";
+  /** Called when other colours are chosen. */
+  chosen: (tint: Tint) => void = () => undefined;
 
   constructor(
     private readonly payload: Payload,
@@ -29,7 +31,14 @@ export class Legend {
     const compared = scene.models.some((model) => model.surface.difference !== null);
     const absent: Partial<Record<Tint, boolean>> = { difference: !compared, ortho: !isDraped };
     for (const tint of TINTS) if (!absent[tint]) this.choice.add(new Option(TITLES[tint], tint));
-    this.choice.addEventListener("change", () => this.setTint(this.choice.value as Tint));
+    this.choice.addEventListener("change", () => {
+      this.setTint(this.choice.value as Tint);
+      this.chosen(this.tint);
+    });
+  }
+
+  offers(tint: string): tint is Tint {
+    return [...this.choice.options].some(({ value }) => value === tint);
   }
 
   setTint(tint: Tint): void {
@@ -69,6 +78,9 @@ export class Legend {
       difference: [joinUnit("Cut (below 0) and fill", unit), [low, 0, high].map((v) => fix(v, digits))],
     };
     const [title, ticks] = ends[shown];
+    const basis = find<HTMLElement>("basis");
+    basis.hidden = shown !== "difference";
+    basis.textContent = this.payload.basis;
     this.box.querySelector("figcaption")!.textContent = title;
     find<HTMLElement>("ramp").style.background =
       `linear-gradient(to right, ${this.payload.ramps[shown].join(", ")})`;

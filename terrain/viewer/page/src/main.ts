@@ -1,9 +1,11 @@
 /** The page: unpacks the surfaces, shows them, and answers to mouse, touch and keys. */
 
-import { find } from "./elements";
+import { Comparison } from "./comparison";
+import { find, tell } from "./elements";
 import { Furniture } from "./furniture";
 import { makeGround } from "./ground";
 import { Legend } from "./legend";
+import { Link } from "./link";
 import { decodeOrtho } from "./ortho";
 import { readPayload, type Payload } from "./payload";
 import { Model, TerrainScene } from "./scene";
@@ -11,10 +13,15 @@ import { Settings } from "./settings";
 import { drawStill } from "./still";
 import { Surface } from "./surface";
 import { Theme } from "./theme";
-import { Tool } from "./tool";
+import { Tool } from "./measure/tool";
 
 const START = { azimuth: 195, tilt: 35 };
 const CLICK_PIXELS = 4;
+/** Milliseconds within which two clicks are a double one. */
+const DOUBLE_CLICK = 400;
+const COMPASS = ["north", "northeast", "east", "southeast", "south", "southwest", "west", "northwest"];
+/** Milliseconds of rest after which the direction of the view is told. */
+const TELL_AFTER = 700;
 
 /** The parts of the page, each with its own elements, and the pointer and keys over the view. */
 class Page {
@@ -23,6 +30,10 @@ class Page {
   readonly settings: Settings;
   readonly tool: Tool;
   readonly furniture: Furniture;
+  readonly comparison: Comparison;
+  readonly link: Link;
+
+  private telling = 0;
 
   constructor(
     readonly payload: Payload,
@@ -33,11 +44,14 @@ class Page {
     this.legend = new Legend(payload, scene, isDraped);
     this.tool = new Tool(payload, scene, this.theme);
     this.furniture = new Furniture(payload, scene, this.theme, this.legend, this.tool);
-    this.settings = new Settings(payload, scene);
+    this.settings = new Settings(payload, scene, this.legend);
+    this.comparison = new Comparison(scene, this.settings);
     this.legend.setTint(isDraped ? "ortho" : payload.tint);
     this.theme.changed = () => this.tool.showMeasured();
     this.listen();
+    describeExtent(payload, scene);
     this.lookFromStart();
+    this.link = new Link(payload, scene, this);
     scene.draw();
   }
 
@@ -48,6 +62,7 @@ class Page {
   private listen(): void {
     const view = this.scene.canvas;
     let down: [number, number] | null = null;
+    let last = [0, 0, -Infinity];
     let waiting = false;
     const pressed = new Set<number>();
     view.addEventListener("pointerdown", (e) => {
@@ -63,7 +78,12 @@ class Page {
       pressed.delete(e.pointerId);
       if (down === null || e.button !== 0) return;
       if (Math.hypot(e.offsetX - down[0], e.offsetY - down[1]) >= CLICK_PIXELS) return;
-      this.tool.point(e.offsetX, e.offsetY);
+      // Told here, as the view may have another size after the first of two clicks.
+      const isSecond = e.timeStamp - last[2] < DOUBLE_CLICK
+        && Math.hypot(e.offsetX - last[0], e.offsetY - last[1]) < 3 * CLICK_PIXELS;
+      last = [e.offsetX, e.offsetY, e.timeStamp];
+      if (isSecond && this.tool.isMeasuring) this.tool.end();
+      else this.tool.point(e.offsetX, e.offsetY);
     });
     view.addEventListener("pointermove", (e) => {
       if (waiting || e.buttons !== 0) return;
@@ -74,6 +94,8 @@ class Page {
       });
     });
     view.addEventListener("keydown", (event) => this.press(event));
+    for (const change of ["focus", "blur"]) view.addEventListener(change, () => this.scene.request());
+    document.addEventListener("keydown", (event) => this.pressAnywhere(event));
     find<HTMLElement>("above").addEventListener("click", () => this.scene.look(180, 90));
     find<HTMLElement>("start").addEventListener("click", () => this.lookFromStart());
   }
@@ -90,11 +112,44 @@ class Page {
     else if (event.key === "-") this.scene.zoom(1 / 1.15);
     else if (event.key.toLowerCase() === "t") this.scene.look(180, 90);
     else if (event.key.toLowerCase() === "h") this.lookFromStart();
-    else if (event.key === "Escape") this.tool.clear();
-    else if (event.key === "Enter") this.tool.point(this.scene.canvas.clientWidth / 2, this.scene.canvas.clientHeight / 2);
+    else if (event.key === "Backspace") this.tool.undo();
+    else if (event.key === "Enter" && this.tool.isMeasuring) this.tool.end();
+    else if (event.key === "Enter" || event.key === " ") this.pointAtMiddle();
     else return;
     event.preventDefault();
+    if (move !== undefined) this.tellView();
   }
+
+  /** Keys that end or cancel a measurement, unless a control has them for itself. */
+  private pressAnywhere(event: KeyboardEvent): void {
+    if (event.defaultPrevented) return;
+    if (event.key === "Escape") this.tool.clear();
+    else if (event.key === "Enter" && event.target === document.body) this.tool.end();
+  }
+
+  private pointAtMiddle(): void {
+    const { clientWidth, clientHeight } = this.scene.canvas;
+    this.tool.point(clientWidth / 2, clientHeight / 2);
+  }
+
+  /** Say where the view looks, once it rests. */
+  private tellView(): void {
+    clearTimeout(this.telling);
+    this.telling = window.setTimeout(() => {
+      const { azimuth, tilt } = this.scene.standpoint;
+      const side = COMPASS[Math.round(azimuth / 45) % COMPASS.length];
+      tell(`Seen from the ${side}, ${Math.round(tilt)} degrees above the horizon.`);
+    }, TELL_AFTER);
+  }
+}
+
+/** Describe the surfaces to those who do not see them. */
+function describeExtent({ units, origin }: Payload, scene: TerrainScene): void {
+  const [low, high] = scene.elevations.map((z) => Number((z + origin[2]).toFixed(2)));
+  const [width, height] = scene.extent.map((one) => Number(one.toPrecision(4)));
+  find<HTMLElement>("extent").textContent =
+    `Elevations from ${low} to ${high} ${units.elevation}; ` +
+    `${width} ${units.horizontal} from west to east, ${height} ${units.horizontal} from south to north.`;
 }
 
 /** Show the terrain as a flat picture, and say why. */
@@ -109,7 +164,7 @@ function showStill(
   const canvas = find<HTMLCanvasElement>("notes");
   [canvas.width, canvas.height] = [canvas.clientWidth, canvas.clientHeight];
   drawStill(canvas, surface, payload, picture);
-  for (const id of ["panel", "north", "bar", "legend"])
+  for (const id of ["side", "north", "bar", "readout"])
     document.getElementById(id)?.setAttribute("style", "display: none");
 }
 

@@ -106,6 +106,8 @@ export interface Payload {
   tint: "elevation" | "slope" | "aspect" | "plain";
   interval: number;
   ramps: Record<"elevation" | "slope" | "aspect" | "difference", string[]>;
+  /** How cut and fill were computed, in words. */
+  basis: string;
   ortho: OrthoData | null;
   surfaces: SurfaceData[];
 }

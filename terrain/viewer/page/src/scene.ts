@@ -28,6 +28,7 @@ import { Pace, simplify } from "./detail";
 import { makeOrthoTexture } from "./ortho";
 import type { LineLayer, Payload } from "./payload";
 import type { Hit, Surface, Vector } from "./surface";
+import { Network } from "./measure/network";
 import { type Lines, unpackLines, unpackRows } from "./unpacking";
 
 const FIELD_OF_VIEW = 30;
@@ -35,11 +36,21 @@ const FIELD_OF_VIEW = 30;
 const FILLED = 0.86;
 const FULL_CIRCLE = 2 * Math.PI;
 
+/** A place of the camera, in coordinates from the origin. */
+export interface Standpoint {
+  target: [number, number, number];
+  azimuth: number;
+  tilt: number;
+  away: number;
+}
+
 /** One surface with all that is drawn with it. */
 export class Model {
   readonly group = new Group();
   readonly material: ShaderMaterial;
   readonly layers = new Map<string, LineSegments2>();
+  /** Breaklines, boundaries and water that are drawn, to measure along them. */
+  readonly network: Network;
   labels: { places: Float64Array; texts: string[]; marks: Points } | null = null;
   private edges: LineSegments | null = null;
   private readonly geometry: BufferGeometry;
@@ -57,6 +68,7 @@ export class Model {
     const mesh = new Mesh(this.geometry, this.material);
     mesh.frustumCulled = false;
     this.group.add(mesh);
+    this.network = new Network(surface.data.step);
   }
 
   /** Draw fewer triangles, or all of them. */
@@ -71,7 +83,9 @@ export class Model {
   async addLayers(): Promise<void> {
     const [across, up] = this.surface.data.step;
     for (const layer of this.surface.data.lines) {
-      const object = drawLines(layer, await unpackLines(layer.lines), across, up);
+      const lines = await unpackLines(layer.lines);
+      const object = drawLines(layer, lines, across, up);
+      this.network.add(layer.kind, lines);
       this.layers.set(layer.kind, object);
       this.group.add(object);
     }
@@ -98,10 +112,18 @@ export class Model {
 
   paint(tint: Tint, ramps: Record<string, ReturnType<typeof makeRamp>>, range: [number, number]): void {
     const { uniforms } = this.material;
-    uniforms.tint.value = TINTS.indexOf(tint);
+    const isPlain = tint === "difference" && this.surface.difference === null;
+    uniforms.tint.value = TINTS.indexOf(isPlain ? "plain" : tint);
     uniforms.ramp.value = tint === "plain" ? null : ramps[tint === "ortho" ? "elevation" : tint];
     uniforms.range.value = range;
   }
+}
+
+/** Two surfaces beside each other: the border, a share of the width from the left, and both. */
+export interface Split {
+  share: number;
+  left: Model;
+  right: Model;
 }
 
 /** Renderer, camera and controls; drawn again only when something has changed. */
@@ -113,8 +135,11 @@ export class TerrainScene {
   readonly models: Model[] = [];
   readonly ramps: Record<string, ReturnType<typeof makeRamp>> = {};
   /** Called after each picture. */
-  drawn: () => void = () => undefined;
+  readonly drawn: (() => void)[] = [];
+  split: Split | null = null;
   readonly pace = new Pace(() => this.setDetail());
+  /** From where all of the surfaces are seen, until the view is moved: kept if its size changes. */
+  private whole: [azimuth: number, tilt: number] | null = null;
   private isCoarse = false;
   private waiting = false;
   private exaggeration = 1;
@@ -132,7 +157,13 @@ export class TerrainScene {
     this.controls.screenSpacePanning = false;
     this.controls.zoomToCursor = true;
     this.controls.maxPolarAngle = 0.495 * Math.PI;
-    this.controls.addEventListener("change", () => this.request());
+    let isMoved = false;
+    this.controls.addEventListener("start", () => (isMoved = true));
+    this.controls.addEventListener("end", () => (isMoved = false));
+    this.controls.addEventListener("change", () => {
+      if (isMoved) this.whole = null;
+      this.request();
+    });
     for (const [name, colors] of Object.entries(payload.ramps)) this.ramps[name] = makeRamp(colors);
   }
 
@@ -169,6 +200,11 @@ export class TerrainScene {
     return Math.max(this.high.x - this.low.x, this.high.y - this.low.y) || 1;
   }
 
+  /** Lengths from west to east and from south to north. */
+  get extent(): [number, number] {
+    return [this.high.x - this.low.x, this.high.y - this.low.y];
+  }
+
   /** Range of the tints, from the origin. */
   get elevations(): [number, number] {
     const [low, high] = this.payload.elevations, base = this.payload.origin[2];
@@ -187,6 +223,52 @@ export class TerrainScene {
     this.request();
   }
 
+  /** Where the camera is: what it looks at, from the origin, elevation in its own unit; from which
+   *  direction and height above the horizon, degrees; and how far away. */
+  get standpoint(): Standpoint {
+    const target = this.controls.target;
+    const arm = new Vector3().subVectors(this.camera.position, target);
+    const away = arm.length();
+    return {
+      target: [target.x, target.y, target.z / this.lift],
+      azimuth: ((Math.atan2(arm.x, arm.y) * 180) / Math.PI + 360) % 360,
+      tilt: (Math.asin(arm.z / away) * 180) / Math.PI,
+      away,
+    };
+  }
+
+  set standpoint({ target, azimuth, tilt, away }: Standpoint) {
+    this.whole = null;
+    const [a, t] = [(azimuth * Math.PI) / 180, (Math.min(Math.max(tilt, 0.9), 89.9999) * Math.PI) / 180];
+    const far = Math.min(Math.max(away, this.controls.minDistance), this.controls.maxDistance);
+    this.controls.target.set(target[0], target[1], target[2] * this.lift);
+    this.camera.position
+      .set(Math.sin(a) * Math.cos(t), Math.cos(a) * Math.cos(t), Math.sin(t))
+      .multiplyScalar(far)
+      .add(this.controls.target);
+    this.controls.update();
+    this.request();
+  }
+
+  /** Whether all of the terrain is in view, as it was when it was last looked at. */
+  get isWhole(): boolean {
+    return this.whole !== null;
+  }
+
+  /** The surfaces that are shown, or those on one side of the border between two. */
+  listShown(px?: number): Model[] {
+    if (this.split === null) return this.models.filter((model) => model.group.visible);
+    const { left, right } = this.split;
+    if (px === undefined) return [left, right];
+    return [px < this.border ? left : right];
+  }
+
+  /** Pixels from the left to the border between two surfaces: under the middle of the slider. */
+  get border(): number {
+    const thumb = 40;
+    return this.split === null ? 0 : thumb / 2 + this.split.share * (this.canvas.clientWidth - thumb);
+  }
+
   /** Look at the middle from a compass direction and a height above the horizon, in degrees. */
   look(azimuth: number, tilt: number): void {
     const [low, high] = this.boundVisible();
@@ -202,6 +284,7 @@ export class TerrainScene {
       middle.y + away * Math.cos(a) * Math.cos(t),
       middle.z + away * Math.sin(t),
     );
+    this.whole = [azimuth, tilt];
     this.controls.minDistance = away / 5000;
     this.controls.maxDistance = 6 * away;
     this.controls.update();
@@ -229,7 +312,7 @@ export class TerrainScene {
   }
 
   private boundVisible(): [Vector3, Vector3] {
-    const seen = this.models.filter((model) => model.group.visible);
+    const seen = this.listShown();
     const [low, high] = [new Vector3(Infinity, Infinity, Infinity), new Vector3(-Infinity, -Infinity, -Infinity)];
     for (const { surface } of seen.length > 0 ? seen : this.models) {
       low.min(new Vector3(...surface.low));
@@ -244,6 +327,7 @@ export class TerrainScene {
 
   /** Turn around the middle of the view, and over it. */
   turn(around: number, over: number): void {
+    this.whole = null;
     const arm = new Vector3().subVectors(this.camera.position, this.controls.target);
     const length = arm.length();
     const azimuth = (Math.atan2(arm.x, arm.y) + around + FULL_CIRCLE) % FULL_CIRCLE;
@@ -260,6 +344,7 @@ export class TerrainScene {
 
   /** Move over the ground by shares of the distance to it. */
   move(right: number, ahead: number): void {
+    this.whole = null;
     const arm = new Vector3().subVectors(this.camera.position, this.controls.target);
     const heading = Math.atan2(-arm.x, -arm.y);
     const far = arm.length();
@@ -275,6 +360,7 @@ export class TerrainScene {
   }
 
   zoom(factor: number): void {
+    this.whole = null;
     const arm = new Vector3().subVectors(this.camera.position, this.controls.target);
     this.camera.position.copy(this.controls.target).addScaledVector(arm, 1 / factor);
     this.controls.update();
@@ -303,8 +389,7 @@ export class TerrainScene {
     const direction = caster.ray.direction.toArray() as Vector;
     let best: { model: Model; hit: Hit } | null = null;
     let nearest = Infinity;
-    for (const model of this.models) {
-      if (!model.group.visible) continue;
+    for (const model of this.listShown(px)) {
       const hit = model.surface.pick(from, direction, this.lift);
       if (hit === null) continue;
       const far = Math.hypot(hit.x - from[0], hit.y - from[1], hit.z * this.lift - from[2]);
@@ -313,12 +398,15 @@ export class TerrainScene {
     return best;
   }
 
-  /** Return where a place is on the page, null behind the camera. */
-  project(x: number, y: number, z: number): [number, number, number] | null {
-    const place = new Vector3(x, y, z * this.lift).project(this.camera);
-    if (place.z > 1) return null;
+  /** Return where a place is on the page, and its depth: from 0 to 1, or as the distance ahead of
+   *  the camera. Null behind the camera. */
+  project(x: number, y: number, z: number, asDistance = false): [number, number, number] | null {
+    const place = new Vector3(x, y, z * this.lift);
+    const ahead = -place.clone().applyMatrix4(this.camera.matrixWorldInverse).z;
+    place.project(this.camera);
+    if (place.z > 1 || ahead <= 0) return null;
     const { clientWidth: width, clientHeight: height } = this.canvas;
-    return [((place.x + 1) / 2) * width, ((1 - place.y) / 2) * height, place.z];
+    return [((place.x + 1) / 2) * width, ((1 - place.y) / 2) * height, asDistance ? ahead : place.z];
   }
 
   setBackground(color: string): void {
@@ -329,6 +417,7 @@ export class TerrainScene {
   resize(width: number, height: number): void {
     this.renderer.setSize(width, height, false);
     this.camera.aspect = width / height;
+    if (this.whole !== null) this.look(...this.whole);
     this.request();
   }
 
@@ -356,8 +445,23 @@ export class TerrainScene {
 
   draw(): void {
     this.fitDepths();
-    this.renderer.render(this.scene, this.camera);
-    this.drawn();
+    if (this.split === null) this.renderer.render(this.scene, this.camera);
+    else this.drawBoth(this.split);
+    for (const act of this.drawn) act();
+  }
+
+  private drawBoth({ left, right }: Split): void {
+    const { clientWidth: width, clientHeight: height } = this.canvas;
+    const shown = this.models.map((model) => model.group.visible);
+    this.renderer.setScissorTest(true);
+    const halves = [[left, 0, this.border], [right, this.border, width - this.border]] as const;
+    for (const [half, from, wide] of halves) {
+      for (const model of this.models) model.group.visible = model === half;
+      this.renderer.setScissor(from, 0, wide, height);
+      this.renderer.render(this.scene, this.camera);
+    }
+    this.renderer.setScissorTest(false);
+    this.models.forEach((model, k) => (model.group.visible = shown[k]));
   }
 
   /** Let the depths that the picture holds end at the box around the surfaces. */

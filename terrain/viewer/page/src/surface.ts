@@ -139,6 +139,13 @@ export class Surface {
     return join(stretches, length);
   }
 
+  /** Return cut or fill at a place. */
+  differenceAt({ triangle, x, y }: Hit): number {
+    const corners = this.corners(triangle);
+    corners.forEach((corner, k) => (corner[2] = this.difference![this.triangles[3 * triangle + k]]));
+    return this.planeAt(corners, [x, y], [0, 0, 0], 0);
+  }
+
   corners(triangle: number): [Vector, Vector, Vector] {
     return [this.vertex(triangle, 0), this.vertex(triangle, 1), this.vertex(triangle, 2)];
   }

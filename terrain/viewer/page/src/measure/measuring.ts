@@ -1,10 +1,11 @@
 /** Lengths, areas and profiles of what was picked. */
 
-import type { Marked } from "./annotations";
-import type { Factors } from "./ground";
-import type { Hit, ProfilePoint } from "./surface";
+import type { Marked } from "../annotations";
+import type { Factors } from "../ground";
+import type { Hit, ProfilePoint } from "../surface";
 
 type Ground = (y: number) => Factors;
+type Plan = Pick<Hit, "x" | "y">;
 
 export interface Measured {
   /** Seen from above, horizontal units. */
@@ -18,19 +19,29 @@ export interface Measured {
 }
 
 /** Return the length of a segment, with the factors of its middle. */
-function measureSegment(a: Hit, b: Hit, ground: Ground): number {
+export function measureSegment(a: Plan, b: Plan, ground: Ground): number {
   const [east, north] = ground((a.y + b.y) / 2);
   return Math.hypot(east * (b.x - a.x), north * (b.y - a.y));
 }
 
-export function measureLine(marked: Marked[], elevationScale: number, ground: Ground): Measured {
+/** Measure a line of places. If it runs along edges, the surface is straight between its places. */
+export function measureLine(
+  marked: Marked[],
+  elevationScale: number,
+  ground: Ground,
+  isOnEdges = false,
+): Measured {
   let [length, covered, groundLength] = [0, 0, 0];
   for (let k = 0; k + 1 < marked.length; k += 1) {
     const [a, b] = [marked[k].hit, marked[k + 1].hit];
     const onGround = measureSegment(a, b, ground);
-    const factor = onGround / (Math.hypot(b.x - a.x, b.y - a.y) || 1);
+    const plain = Math.hypot(b.x - a.x, b.y - a.y);
+    const factor = onGround / (plain || 1);
     length += onGround;
-    for (const piece of marked[k].model.surface.profile([a.x, a.y], [b.x, b.y]))
+    const pieces: ProfilePoint[][] = isOnEdges
+      ? [[[0, a.z], [plain, b.z]]]
+      : marked[k].model.surface.profile([a.x, a.y], [b.x, b.y]);
+    for (const piece of pieces)
       for (let i = 0; i + 1 < piece.length; i += 1) {
         const along = factor * (piece[i + 1][0] - piece[i][0]);
         covered += along;
@@ -67,23 +78,4 @@ export function crossesItself(marked: Marked[]): boolean {
       if (side(a, b, c) * side(a, b, d) < 0 && side(c, d, a) * side(c, d, b) < 0) return true;
     }
   return false;
-}
-
-/** Return the profile of every surface along a line of places, distances summed. */
-export function profileAlong(
-  marked: Marked[],
-  surface: Marked["model"]["surface"],
-  ground: Ground,
-): ProfilePoint[][] {
-  const pieces: ProfilePoint[][] = [];
-  let before = 0;
-  for (let k = 0; k + 1 < marked.length; k += 1) {
-    const [a, b] = [marked[k].hit, marked[k + 1].hit];
-    const length = measureSegment(a, b, ground);
-    const factor = length / (Math.hypot(b.x - a.x, b.y - a.y) || 1);
-    for (const piece of surface.profile([a.x, a.y], [b.x, b.y]))
-      pieces.push(piece.map(([distance, z]) => [before + factor * distance, z]));
-    before += length;
-  }
-  return pieces;
 }
