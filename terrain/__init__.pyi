@@ -79,6 +79,8 @@ from .sections.corridors import Part as Part
 from .sections.corridors import Side as Side
 from .sections.corridors import Template as Template
 from .sections.corridors import corridor as corridor
+from .sections.rivers import hydroflatten as hydroflatten
+from .sections.rivers import riverbed as riverbed
 from .sections.staking import CombinedFactor as CombinedFactor
 from .sections.staking import combined_factor as combined_factor
 from .sections.staking import stake_points as stake_points

@@ -102,6 +102,19 @@ def write_street():
     ts.write(ts.Features.of_lines(np.concatenate(wall), [0, 2, 4], crs=CRS), "walls.dxf")
 
 
+def write_river():
+    """Write cross sections with their centreline, and a stream on the site."""
+    shape = np.array([[0, 10, 321], [0, 6, 318], [0, 4, 318], [0, 0, 321]])
+    moves = np.column_stack([np.array([0.0, 30, 70]), [0, 0, 0], [0, -0.6, -1.4]])
+    sections = shape + np.append(MIDDLE, 0.0) + moves[:, None]
+    offsets = [0, 4, 8, 12]
+    ts.write(ts.Features.of_lines(np.concatenate(sections), offsets, crs=CRS), "sections.gpkg")
+    line = MIDDLE + np.array([[-1.0, 5], [71, 5]])
+    ts.write(ts.Features.of_lines(line, [0, 2], crs=CRS), "stream-line.gpkg")
+    ring = MIDDLE + [60, 4] * SQUARE
+    ts.write(ts.Features.of_polygons(ring, [0, 5], [0, 1], crs=CRS), "stream.gpkg")
+
+
 def write_files():
     Path("sample_data").symlink_to(ROOT / "sample_data")
     survey = ts.read("sample_data/site_survey.csv", crs=CRS)
@@ -117,6 +130,7 @@ def write_files():
     )
     ts.write(road, "road.xml")
     write_street()
+    write_river()
     crest = np.array([[-30.0, -10.0, 325.0], [30.0, 10.0, 325.0]])
     crest[:, :2] += MIDDLE
     ts.write(ts.Features.of_lines(crest, [0, 2], crs=CRS), "crest.gpkg")

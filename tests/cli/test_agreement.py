@@ -20,8 +20,8 @@ CRS = "EPSG:32616"
 UTM = ("--crs", CRS, "--elevation-unit", "m")
 RING = [[700_030, 4_000_030], [700_060, 4_000_030], [700_060, 4_000_060], [700_030, 4_000_060]]
 SLOPES = ("--cut-slope", 2, "--fill-slope", 2)
-NO_SURFACE = {"completion", "formats", "alignment"}
-"""Commands that read nothing, or an axis."""
+NO_SURFACE = {"completion", "formats", "alignment", "riverbed"}
+"""Commands that read nothing, an axis or sections."""
 _NUMBER = re.compile(r"(?<![\w.])-?\d[\d,]*(?:\.\d+)?")
 
 
@@ -594,6 +594,12 @@ AGREEMENTS = {
     ],
     "ground": [compare_classes],
     "hillshade": [compare_raster("hillshade")],
+    "hydroflatten": [
+        compare_meshes(
+            *("hydroflatten", "f.ply", "Flattened", "--stream", "stream.geojson"),
+            *("--downstream", "along", "--spacing", 5),
+        )
+    ],
     "info": [compare_info],
     "inspect": [compare_inspection],
     "interpolate": [compare_interpolated],
@@ -649,6 +655,14 @@ def folder(tmp_path, monkeypatch):
     write_features(tmp_path / "ring.geojson", ("pad", ring))
     write_features(tmp_path / "two.geojson", ("pad", ring), ("aside", second))
     write_features(tmp_path / "axis.geojson", ("axis", line))
+    corners = [
+        [700_005, 4_000_040],
+        [700_090, 4_000_040],
+        [700_090, 4_000_050],
+        [700_005, 4_000_050],
+    ]
+    stream = {"type": "Polygon", "coordinates": [[*corners, corners[0]]]}
+    write_features(tmp_path / "stream.geojson", ("stream", stream))
     inner = {"type": "LineString", "coordinates": [[700_005, 4_000_005], [700_040, 4_000_040]]}
     write_features(tmp_path / "cut.geojson", ("axis", inner))
     road = [[700_020, 4_000_020, 322], [700_030, 4_000_020, 322]]

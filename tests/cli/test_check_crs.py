@@ -32,6 +32,8 @@ COMMANDS = {
     "paste": "paste TIN PATCH -o OUT.ply",
     "merge": "merge PATCH TIN -o OUT.ply",
     "coregister": "coregister TIN TIN2 --spacing 2 -o OUT.ply",
+    "riverbed": "riverbed SECTIONS AXIS --spacing 5 -o OUT.ply",
+    "hydroflatten": "hydroflatten TIN --stream STREAM --downstream along --spacing 5 -o OUT.ply",
     "clip": "clip TIN --by PAD -o OUT.ply",
     "ground": "ground POINTS -o OUT.las",
     "edit": "edit TIN EDITS -o OUT.ply",
@@ -72,6 +74,9 @@ def files(tmp_path_factory):
         "ROAD": folder / "road.fgb",
         "TEMPLATE": folder / "template.csv",
         "PAD": folder / "pad.fgb",
+        "STREAM": folder / "stream.fgb",
+        "SECTIONS": folder / "sections.fgb",
+        "AXIS": folder / "axis.fgb",
         "EDITS": folder / "edits.json",
         "QUERY": folder / "query.csv",
     }
@@ -83,6 +88,11 @@ def files(tmp_path_factory):
     ts.write(ts.Features.of_polygons(ring, [0, 5], [0, 1]), made["PAD"])
     road = np.column_stack([ring[[0, 2]][:, :2], [304.0, 304.0]])
     ts.write(ts.Features.of_lines(road, [0, 2]), made["ROAD"])
+    stream = ring[:, :2] * [1.0, 0.2] + [0.0, 0.8 * y]
+    ts.write(ts.Features.of_polygons(stream, [0, 5], [0, 1]), made["STREAM"])
+    ts.write(ts.Features.of_lines([[x - 9, y], [x + 9, y]], [0, 2]), made["AXIS"])
+    sections = [[x + a, y + b, 304] for a in (-5, 5) for b in (-3, 0, 3)]
+    ts.write(ts.Features.of_lines(sections, [0, 3, 6]), made["SECTIONS"])
     made["TEMPLATE"].write_text(
         "side,name,width,slope,use,ratio\nboth,lane,1,,,\nboth,,,,cut,1\nboth,,,,fill,1\n"
     )

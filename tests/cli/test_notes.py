@@ -32,6 +32,9 @@ COMMANDS = {
     "grade": ["--pad", "ring.geojson", "--elevation", 322, *SLOPES, "-o", "out.ply"],
     "ground": ["--any-return", "-o", "out.csv"],
     "hillshade": ["--spacing", 5, "-o", "out.tif"],
+    "hydroflatten": [
+        *("--stream", "stream.geojson", "--downstream", "along", "--spacing", 5, "-o", "out.ply")
+    ],
     "info": [],
     "inspect": ["-o", "out.csv"],
     "interpolate": ["--at", "places.csv", "-o", "out.csv"],
@@ -53,7 +56,7 @@ COMMANDS = {
 }
 """Arguments behind a file of points, of every command that reads one."""
 
-NO_INPUT = {"formats", "completion", "alignment"}
+NO_INPUT = {"formats", "completion", "alignment", "riverbed"}  # which takes sections
 POINTS_ALONE = {"compare", "convert", "ground", "info"}
 """Commands that make no surface, or none of all points: they know what the reader found."""
 
@@ -104,6 +107,15 @@ def folder(tmp_path, monkeypatch):
     }
     collection["features"] = [feature | {"geometry": road}]
     (tmp_path / "road.geojson").write_text(json.dumps(collection))
+    stream = [
+        [700_005, 4_000_050],
+        [700_090, 4_000_050],
+        [700_090, 4_000_060],
+        [700_005, 4_000_060],
+    ]
+    polygon = {"type": "Polygon", "coordinates": [[*stream, stream[0]]]}
+    collection["features"] = [feature | {"geometry": polygon}]
+    (tmp_path / "stream.geojson").write_text(json.dumps(collection))
     (tmp_path / "template.csv").write_text(TEMPLATE)
     edits = [{"op": "insert", "points": [[700_004, 4_000_004, 321]]}]
     (tmp_path / "edits.json").write_text(json.dumps(edits))

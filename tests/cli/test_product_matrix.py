@@ -178,6 +178,8 @@ OTHERS = {
     "compare": "writes pictures",
     "grade": "writes a surface, as paste does",
     "corridor": "writes a surface, as paste does",
+    "riverbed": "writes a surface of sections",
+    "hydroflatten": "writes a surface, as paste does",
     "ground": "writes points",
     "edit": "writes a surface, as convert does",
     "formats": "writes nothing",

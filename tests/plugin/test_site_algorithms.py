@@ -17,6 +17,11 @@ AXIS = [[752740.0, 4024290.0, 327.0], [752780.0, 4024300.0, 328.0]]
 TEMPLATE = (
     "side,name,width,slope,use,ratio\nboth,lane,3,-0.02,turns,\nboth,,,,cut,2\nboth,,,,fill,2\n"
 )
+MIDDLE = [[752735.0, 4024302.5], [752785.0, 4024302.5]]
+SECTIONS = [
+    [[x, 4024312.0, z + 3], [x, 4024304.0, z], [x, 4024300.0, z], [x, 4024293.0, z + 3]]
+    for x, z in ((752745.0, 320.0), (752775.0, 319.0))
+]
 PATCH = [[752700.0, 4024240.0, 330.0], [752720.0, 4024240.0, 330.0], [752710.0, 4024260.0, 331.0]]
 
 
@@ -33,6 +38,10 @@ def make_site(folder):
     return tin, layers | {
         "pad": qgis.make_layer("Polygon", [[qgis.write_wkt("Polygon", [*PAD, PAD[0]]), []]]),
         "road": qgis.make_layer("LineStringZ", [[qgis.write_wkt("LineString Z", AXIS), []]]),
+        "middle": qgis.make_layer("LineString", [[qgis.write_wkt("LineString", MIDDLE), []]]),
+        "sections": qgis.make_layer(
+            "LineStringZ", [[qgis.write_wkt("LineString Z", one), []] for one in SECTIONS]
+        ),
         "patch": {"kind": "mesh", "path": str(folder / "patch.ply")},
         "cloud": {"kind": "vector", "path": str(folder / "cloud.gpkg")},
         "places": qgis.make_layer("Point", degrees, crs="EPSG:4326"),
@@ -75,6 +84,10 @@ def test_results_are_those_of_the_package(tmp_path):
                          TEMPLATE=str(tmp_path / "template.csv"),
                          SUPERELEVATION=str(tmp_path / "turns.json"),
                          OUTPUT=tmp_path / "road.ply"),
+        "bed": qgis.job("riverbed", SECTIONS="sections", LINE="middle", SPACING=5,
+                        OUTPUT=tmp_path / "bed.ply"),
+        "level": qgis.job("hydroflatten", INPUT="ground", STREAM="pad", CENTRELINE="middle",
+                          DOWNSTREAM="along", SPACING=5, OUTPUT=tmp_path / "level.ply"),
         "pasted": qgis.job("paste", BASE="ground", PATCH="patch", OUTPUT=tmp_path / "pasted.nc"),
         "merged": qgis.job("merge", FIRST="patch", SECOND="ground", BLEND=2.5,
                            OUTPUT=tmp_path / "merged.ply"),
@@ -177,6 +190,10 @@ def check_earthwork(told, tin, folder):
     shifted = ts.coregister(tin, tin, unstable=[PAD]).tin
     qgis.assert_same_tin(ts.read(folder / "shifted.ply"), shifted)
     assert qgis.take_layer(told["shifted"], "shifted")["faces"] == len(shifted.triangles)
+    bed = ts.riverbed([np.array(one) for one in SECTIONS], MIDDLE, spacing=5, crs=qgis.UTM)
+    qgis.assert_same_tin(ts.read(folder / "bed.ply"), bed)
+    level = ts.hydroflatten(tin, [PAD], MIDDLE, downstream="along", spacing=5)
+    qgis.assert_same_tin(ts.read(folder / "level.ply"), level)
     clipped = ts.clip(tin, [PAD])
     qgis.assert_same_tin(ts.read(folder / "part.ply"), clipped)
     assert qgis.take_layer(told["clipped"], "part")["faces"] == len(clipped.triangles)

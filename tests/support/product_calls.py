@@ -29,6 +29,9 @@ RING = [[700_030, 4_000_030], [700_060, 4_000_030], [700_060, 4_000_060], [700_0
 CORNER = [[700_012, 4_000_012], [700_020, 4_000_012], [700_020, 4_000_020]]
 """A pad away from the vertex of elevation 0."""
 
+RIVER = [[700_010, 4_000_050], [700_080, 4_000_050], [700_080, 4_000_058], [700_010, 4_000_058]]
+RIVER_AXIS = [[700_010.0, 4_000_054.0], [700_080.0, 4_000_054.0]]
+
 RESULTS = {
     "aspect_classes": ts.aspect_classes,
     "catchments": ts.catchments,
@@ -73,6 +76,9 @@ RESULTS = {
     # surfaces
     "merge": lambda tin: ts.merge([ts.triangulate(add_height(RING, 330), crs=HILL.crs), tin]),
     "corridor": lambda tin: ts.corridor(tin, AXIS, ROAD),
+    "hydroflatten": lambda tin: ts.hydroflatten(
+        tin, RIVER, RIVER_AXIS, spacing=10.0, downstream="along"
+    ),
     "clip": lambda tin: ts.clip(tin, [RING]),
     "mend_flats": ts.mend_flats,
     "paste": lambda tin: ts.paste(tin, ts.triangulate(add_height(RING, 330), crs=HILL.crs)),

@@ -7,7 +7,7 @@ from .check import CheckAlgorithm
 from .contours import ContoursAlgorithm
 from .convert import ConvertAlgorithm
 from .flow import FlowAlgorithm
-from .grade import CorridorAlgorithm, GradeAlgorithm
+from .grade import CorridorAlgorithm, GradeAlgorithm, HydroflattenAlgorithm, RiverbedAlgorithm
 from .ground import GroundAlgorithm
 from .inspect import InspectAlgorithm
 from .install import InstallAlgorithm
@@ -38,6 +38,8 @@ ALGORITHMS = (
     SightAlgorithm,
     GradeAlgorithm,
     CorridorAlgorithm,
+    RiverbedAlgorithm,
+    HydroflattenAlgorithm,
     PasteAlgorithm,
     MergeAlgorithm,
     ClipAlgorithm,

@@ -1,4 +1,4 @@
-"""Grade a pad into a TIN, or a corridor along an axis."""
+"""Grade a pad into a TIN, or a corridor along an axis; river beds and flowing water."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import Any
 from qgis.core import QgsProcessingParameterFile
 
 from ..inputs import POLYGONS, Lines, Surface
-from ..options import describe, number, switch, text
+from ..options import choice, describe, number, switch, text
 from .base import CommandAlgorithm, Run
 
 _TABLES = "Tables (*.csv *.txt *.json)"
@@ -116,3 +116,82 @@ class CorridorAlgorithm(CommandAlgorithm):
         if turns:
             words.append(f"--superelevation={turns}")
         return [*words, *run.list_options(self.options), *run.list_extra()]
+
+
+class RiverbedAlgorithm(CommandAlgorithm):
+    """Interpolate a river bed between cross sections."""
+
+    verb = "riverbed"
+    title = "River bed"
+    summary = "Interpolates the bed of a river between cross sections, along the channel."
+    explanation = (
+        "Sections are lines with elevations, the centreline a layer of one line downstream. "
+        "Between two sections elevations are linear along the channel at the same share of the "
+        "width, or of each part between ends, banks and thalweg. Surveyed points stay as they are."
+    )
+    lines = (
+        Lines("SECTIONS", "Cross sections", "", "Lines with elevations.", required=True),
+        Lines("LINE", "Centreline", "", "A layer of one line.", required=True),
+        Lines("BANKS", "Banks", "--banks", "Two lines, which every section crosses."),
+        Lines("THALWEG", "Thalweg", "--thalweg", "The line of the deepest flow."),
+    )
+    options = (
+        number(
+            "SPACING", "Step along the channel", "--spacing", "At most.", least=0.0, required=True
+        ),
+        switch("OMIT_RETURNS", "Leave out returns", "--omit-returns", "Of the track of a boat."),
+    )
+
+    def add_outputs(self) -> None:
+        """Add the TIN, and counts for models."""
+        self.add_mesh_output("River bed")
+        self.add_counts()
+
+    def make(self, run: Run) -> dict[str, Any]:
+        """Interpolate."""
+        return self.make_mesh(run, "River bed")
+
+    def list_inputs(self, run: Run) -> list[str]:
+        """Return all arguments but the outputs."""
+        files = [word.partition("=")[2] for word in run.list_lines(self.lines[:2])]
+        chosen = [*run.list_lines(self.lines[2:]), *run.list_options(self.options)]
+        return [self.verb, *files, *chosen, *run.list_extra()]
+
+
+class HydroflattenAlgorithm(CommandAlgorithm):
+    """Make flowing water level across, and fall downstream."""
+
+    verb = "hydroflatten"
+    title = "Hydro-flatten a stream"
+    summary = "Makes a stream level from bank to bank, and fall downstream."
+    explanation = (
+        "At each station of the centreline the water has one level, nowhere above the ground at "
+        "the shore, nor higher than upstream. Build TIN flattens lakes."
+    )
+    surfaces = (Surface(),)
+    lines = (
+        Lines("STREAM", "Stream", "--stream", "Islands as holes.", kind=POLYGONS, required=True),
+        Lines("CENTRELINE", "Centreline", "--centreline", "Default that in the middle."),
+    )
+    options = (
+        number(
+            "SPACING", "Distance of lines across", "--spacing", "At most.", least=0.0, required=True
+        ),
+        choice("FIT", "Levels", "--fit", "Below the shores, or nearest.", ("lowest", "isotonic")),
+        choice(
+            "DOWNSTREAM",
+            "Downstream",
+            "--downstream",
+            "As the shores fall, along the centreline, or against it.",
+            ("guess", "along", "against"),
+        ),
+    )
+
+    def add_outputs(self) -> None:
+        """Add the TIN, and counts for models."""
+        self.add_mesh_output("Flattened TIN")
+        self.add_counts()
+
+    def make(self, run: Run) -> dict[str, Any]:
+        """Flatten."""
+        return self.make_mesh(run, "Flattened TIN")

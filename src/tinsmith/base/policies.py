@@ -183,3 +183,9 @@ TileGaps: TypeAlias = Literal["lowest", "transparent"]
 
 SceneFrame: TypeAlias = Literal["map", "local", "globe"]
 """Where a scene in 3D has its surface."""
+
+WaterFit: TypeAlias = Literal["lowest", "isotonic"]
+"""How the level of flowing water follows its banks: never above them, or by least squares."""
+
+FlowDirection: TypeAlias = Literal["guess", "along", "against"]
+"""Which way water flows along a centreline: as the banks fall, as it is drawn, or against it."""

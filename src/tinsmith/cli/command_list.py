@@ -40,6 +40,10 @@ SECTIONS = {
         "sight": "Compute lines of sight and viewsheds.",
         "plan": "Draw a scaled plan: PDF, SVG, PNG.",
     },
+    "Rivers": {
+        "riverbed": "Interpolate a river bed between cross sections, along the channel.",
+        "hydroflatten": "Make a stream level from bank to bank, and fall downstream.",
+    },
     "Shell": {
         "completion": "Write the completion script of a shell.",
     },

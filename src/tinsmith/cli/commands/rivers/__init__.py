@@ -1,0 +1,1 @@
+"""Commands of rivers: their beds, and the water in them."""
