@@ -29,6 +29,11 @@ ORTHOS = HERE.parent / "build" / "orthos"
 CRS = "EPSG:32616"
 COLORS = 128
 ARGUMENTS = ("--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader")
+SHOW = "p.scene.draw(); p.tool.read(460, 400);"
+SHOW_EPOCHS = """document.getElementById("comparing").click(); p.tool.choose("distance");
+  await new Promise((done) => setTimeout(done, 500));
+  const { clientWidth: w, clientHeight: h } = p.scene.canvas;
+  p.tool.mark(0.35 * w, 0.5 * h); p.tool.mark(0.65 * w, 0.55 * h); p.tool.read(0.5 * w, 0.5 * h);"""
 FOREST, MEADOW, FIELD, ROCK = (62, 84, 50), (126, 142, 84), (186, 172, 118), (150, 142, 128)
 PAVED = (128, 127, 124)
 
@@ -40,6 +45,11 @@ def main(folder: Path = HERE) -> None:
     site = ts.triangulate(ts.lines_from_codes(survey))
     hills = ts.triangulate(ts.read(SAMPLES / "jacksboro.tif"))
     draw_page(ts.preview(site, survey=survey, title="Site survey"), folder / "preview-page.png")
+    draw_page(
+        ts.preview({"Before": site, "After": move_ground(site)}, title="Two epochs"),
+        folder / "preview-epochs.png",
+        show=SHOW_EPOCHS,
+    )
     draw_page(ts.preview(hills, title="Jacksboro, Tennessee"), folder / "preview-hills.png")
     ortho = paint_site(site)
     with warnings.catch_warnings():
@@ -56,7 +66,14 @@ def main(folder: Path = HERE) -> None:
     save_colors(folder / "preview-ortho.png")
 
 
-def draw_page(shown: Any, path: Path) -> None:
+def move_ground(tin: ts.TIN) -> ts.TIN:
+    """Return a surface with invented cut and fill."""
+    points = tin.points.copy()
+    points[:, 2] += 2 * np.sin(points[:, 0] / 23) * np.cos(points[:, 1] / 31)
+    return tin.replace(points=points)
+
+
+def draw_page(shown: Any, path: Path, show: str = SHOW) -> None:
     """Take a picture of a page as Chromium shows it, in few colours."""
     from playwright.sync_api import sync_playwright
 
@@ -66,7 +83,7 @@ def draw_page(shown: Any, path: Path) -> None:
         browser = driver.chromium.launch(executable_path=browser_path, args=[*ARGUMENTS])
         page = browser.new_page(viewport={"width": 1200, "height": 740})
         page.goto(page_path.as_uri(), timeout=120_000)
-        page.evaluate("window.terrain.then((p) => { p.scene.draw(); p.tool.read(560, 420); })")
+        page.evaluate(f"window.terrain.then(async (p) => {{ {show} }})")
         page.wait_for_timeout(2000)
         page.screenshot(path=path, timeout=120_000)
         browser.close()

@@ -441,6 +441,38 @@ def test_view_of_a_raster_from_standard_input_is_a_sample_too(tmp_path, monkeypa
     assert drawn[0][1]["title"].startswith("Terrain surface (")
 
 
+def test_view_shows_each_file_of_a_tin_and_points_apart_if_asked(tmp_path, drawn):
+    points = np.array([[0, 0, 5], [4, 0, 6], [0, 3, 8], [5, 5, 7.0]])
+    for name, rise in (("before", 0.0), ("after_1", 2.0)):
+        raised = points + np.array([0.0, 0.0, rise])
+        ts.write(ts.triangulate(raised), tmp_path / f"{name}.ply")
+        np.savetxt(tmp_path / f"{name}.csv", raised, delimiter=",", header="x,y,z", comments="")
+    meshes = [tmp_path / "before.ply", tmp_path / "after_1.ply"]
+    tables = [tmp_path / "before.csv", tmp_path / "after_1.csv"]
+    out = tmp_path / "a.html"
+    run("view", *meshes, "-o", out)
+    run("view", *tables, "--compare", "-o", out)
+    for given, options in drawn:
+        assert [tin.points[0, 2] for tin in given] == [5.0, 7.0]
+        assert options["title"] == "before, after 1"
+        assert options["survey"] is None
+    run("view", *tables, "-o", out)
+    assert isinstance(drawn[2][0], ts.TIN)
+    result = run("view", tables[0], "--compare", "-o", out, code=2)
+    assert "--compare needs two files or more, and there is one." in result.stderr
+    result = run("view", meshes[0], tables[0], "-o", out, code=1)
+    assert "holds a TIN, whose triangles cannot be joined" in result.stderr
+
+
+def test_view_compares_samples_of_rasters_and_says_so(tmp_path, monkeypatch, drawn):
+    monkeypatch.setattr("tinsmith.cli.commands.surfaces.view._MOST_CELLS", 400)
+    dem = SAMPLES / "jacksboro.tif"
+    result = run("view", dem, dem, "--compare", "-o", tmp_path / "a.html")
+    told = f"{len(drawn[0][0][0].points):,} of {len(ts.read(dem).points):,} cells"
+    assert drawn[0][1]["title"] == f"jacksboro, jacksboro ({told}, {told})"
+    assert f"Sampled     {told}, {told} are shown" in result.stderr
+
+
 def test_view_writes_a_picture(pyramid, tmp_path, can_draw):
     pytest.importorskip("pyvista")
     picture = tmp_path / "out.png"

@@ -109,12 +109,7 @@ class Job:
 
         They are reprojected if that is asked for.
         """
-        from ..io.reading import join_files
-
-        found = self._read_each(paths)
-        if len(found) == 1:
-            return found[0]
-        return join_files(found, [Path(name_file(path)) for path in paths])
+        return _join(self._read_each(paths), paths)
 
     def read_base(self, *paths: Path, need: str) -> tuple[TIN | None, Survey]:
         """Read points, and the TIN that they are for, if there are several files, the first of one.
@@ -164,9 +159,11 @@ class Job:
 
     def read_surface(self, *paths: Path) -> tuple[TIN, Survey | None]:
         """Read a TIN, or points and build theirs; the points are None for a file of a TIN."""
+        return self._make_surface(self.read(*paths), paths[0])
+
+    def _make_surface(self, found: Survey | TIN, path: Path) -> tuple[TIN, Survey | None]:
         from ..tin import TIN
 
-        found = self.read(*paths)
         if not isinstance(found, TIN):
             survey = self.add_lines(found)
             tin = self.build_tin(survey)
@@ -174,11 +171,25 @@ class Job:
             return tin, survey
         if self.building.shaping:
             raise Failure(
-                f"'{paths[0]}' holds a TIN already, and {self.building.shaping[0]} needs points to "
+                f"'{path}' holds a TIN already, and {self.building.shaping[0]} needs points to "
                 "build from: 'tinsmith edit' adds lines to a TIN."
             )
         self.note_surfaces(found)
         return found, None
+
+    def read_surfaces(
+        self, files: Sequence[Path], *, apart: bool
+    ) -> list[tuple[TIN, Survey | None]]:
+        """Read what is shown together: TINs each by itself, files of points as one surface.
+
+        ``apart`` takes each file of points by itself, too. The points are None for a file of a TIN.
+        """
+        from ..tin import TIN
+
+        found = self._read_each(files)
+        if apart or (len(found) > 1 and all(isinstance(one, TIN) for one in found)):
+            return self._make_each(found)
+        return [self._make_surface(_join(found, files), files[0])]
 
     def read_tins(self, files: Sequence[Path]) -> list[TIN]:
         """Read TINs, or points and build theirs; files of lines are for the one file of points.
@@ -186,9 +197,11 @@ class Job:
         Codes, and the longest edge, are for each file of points. Refused where it cannot be told
         for which file an option is.
         """
+        return [tin for tin, _ in self._make_each([self.read(file) for file in files])]
+
+    def _make_each(self, found: Sequence[Survey | TIN]) -> list[tuple[TIN, Survey | None]]:
         from ..tin import TIN
 
-        found = [self.read(file) for file in files]
         n_surveys = sum(not isinstance(one, TIN) for one in found)
         of_each = [f"--{name.replace('_', '-')}" for name in ("max_edge", *CODE_FLAGS)]
         given = self.building.shaping
@@ -198,11 +211,15 @@ class Job:
                 f"{(named or given)[0]} needs {'a' if n_surveys == 0 else 'one'} file of points, "
                 f"and there are {n_surveys}: 'tinsmith build' makes TINs of them first."
             )
-        surfaces = [
-            one if isinstance(one, TIN) else self.build_tin(self.add_lines(one)) for one in found
-        ]
-        self.note_surfaces(*surfaces)
-        return surfaces
+        made: list[tuple[TIN, Survey | None]] = []
+        for one in found:
+            if isinstance(one, TIN):
+                made.append((one, None))
+            else:
+                survey = self.add_lines(one)
+                made.append((self.build_tin(survey), survey))
+        self.note_surfaces(*(tin for tin, _ in made))
+        return made
 
     def read_cells(self, path: Path) -> Raster | None:
         """Return the raster of a file; None if its cells are to be points, or it is no raster."""
@@ -314,6 +331,15 @@ class Job:
             return found
         lines = Features.of_lines(found.coordinates, found.offsets[0], crs=found.crs)
         return lines.with_notes(found.notes)
+
+
+def _join(found: Sequence[Survey | TIN], paths: Sequence[Path]) -> Survey | TIN:
+    """Return what was read as one survey, or the TIN of the only file."""
+    from ..io.reading import join_files
+
+    if len(found) == 1:
+        return found[0]
+    return join_files(list(found), [Path(name_file(path)) for path in paths])
 
 
 def name_features(path: Path | None, place: str) -> list[Named]:

@@ -17,6 +17,8 @@ from ...paths import INPUT, Named, describe_inputs, make_title
 from ...product_options import product_options
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from ....tin import Survey
 
 _MOST_CELLS = 1_000_000
@@ -38,6 +40,12 @@ def _parse_size(flag: str, value: str) -> tuple[int, int]:
 @command
 @input_files("files")
 @picture_option("Page (.html) or picture (.png, .jpg, .tif) to write instead of opening a window.")
+@click.option(
+    "--compare",
+    is_flag=True,
+    help="Show the points of each of FILES as a surface of its own in a page, the earliest first; "
+    "files of TINs always are.",
+)
 @product_options(_PREVIEW, "exaggeration edges lines")
 @click.option("--top", is_flag=True, help="View from vertically above, north up.")
 @file_option(
@@ -66,18 +74,24 @@ def view(
     output: Path | None,
     ortho: Path | None,
     full: bool,
+    compare: bool,
     job: Job,
     **drawing: Any,
 ) -> None:
     """Show the TIN in FILES, or built from the points in them, in 3D.
 
+    A page shows several TINs, the earliest or the existing ground first: with a slider between two
+    of them, and cut and fill from each to the next.
+
     Example:
       tinsmith view sample_data/site_survey.csv --crs EPSG:32616 --codes -o site.html
+      tinsmith view before.ply after.ply -o change.html
     """
     from ....terrain import preview
     from ....terrain.viewer import PREVIEW_SUFFIXES
     from ...outputs import describe_file, require_picture
 
+    _require_several(files, compare)
     more = [] if ortho is None else [Named(ortho, "the picture to drape")]
     if output is not None:
         inputs = job.list_inputs(*files, more=more)
@@ -86,16 +100,20 @@ def view(
         # Half as many for a page: pages are sent by mail.
         is_page = output is not None and output.suffix.lower().startswith(".htm")
         job = job.with_fallback(most_cells=_MOST_CELLS // 2 if is_page else _MOST_CELLS)
-    tin, survey = job.read_surface(*files)
-    sample = None if survey is None else _describe_sample(survey)
+    surfaces = job.read_surfaces(files, apart=compare)
+    tin, survey = surfaces[0]
+    shown_tins = tin if len(surfaces) == 1 else [one for one, _ in surfaces]
+    sample = _describe_samples([survey for _, survey in surfaces])
     drawing["view"] = "top" if drawing.pop("top") else "oblique"
-    drawing["title"] = drawing["title"] or make_title(files[0])
+    named = files if len(surfaces) > 1 else files[:1]
+    drawing["title"] = drawing["title"] or ", ".join(filter(None, map(make_title, named)))
     drawing = {name: value for name, value in drawing.items() if value is not None}
     if sample is not None:
         job.console.summarise([("Sampled", f"{sample} are shown; --full shows all")])
         drawing["title"] = f"{drawing['title'] or _UNNAMED} ({sample})"
     with job.step("Drawing"):
-        shown = preview(tin, survey=survey, ortho=ortho, **drawing)
+        labelled = survey if len(surfaces) == 1 else None
+        shown = preview(shown_tins, survey=labelled, ortho=ortho, **drawing)
         if output is None:
             shown.show()
         else:
@@ -112,6 +130,17 @@ def view(
             facts.record(sample=sample)
         if job.console.as_json:
             job.console.emit_record(facts.values)
+
+
+def _require_several(files: Sequence[Path], compare: bool) -> None:
+    if compare and len(files) == 1:
+        raise click.UsageError("--compare needs two files or more, and there is one.")
+
+
+def _describe_samples(surveys: Sequence[Survey | None]) -> str | None:
+    """Return how many cells of rasters were read, if not all were."""
+    samples = [_describe_sample(one) for one in surveys if one is not None]
+    return ", ".join(filter(None, samples)) or None
 
 
 def _describe_sample(survey: Survey) -> str | None:
