@@ -23,6 +23,8 @@ if TYPE_CHECKING:
 
 _SAME = 1e-9
 """Of a section's length: what is nearer along it is one place."""
+_ROUNDINGS = 64
+"""Roundings of coordinates that are added to it."""
 
 
 class CrossSection(NamedTuple):
@@ -347,7 +349,8 @@ def _cross(section: CrossSection, line: Any, name: str) -> tuple[float, float]:
     import shapely
 
     own = shapely.linestrings(section.points[:, :2])
-    near = _SAME * float(own.length + np.abs(section.points[:, :2]).max())
+    largest = float(np.abs(section.points[:, :2]).max())
+    near = _SAME * float(own.length) + _ROUNDINGS * float(np.spacing(largest))
     places = shapely.get_coordinates(shapely.intersection(own, line))
     if not len(places):
         ends = shapely.points(section.points[[0, -1], :2])
