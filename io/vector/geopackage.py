@@ -11,7 +11,7 @@ from ...base.atomic import folder_beside
 from ...base.checks import as_flag
 from ...base.errors import OptionError, WriteError
 from ...base.sentences import FILE
-from ..mesh.geopackage.containers import MARK, Placing, adding_layers
+from ..mesh.geopackage.existing_layers import MARK, Placing, adding_layers
 from .ogr import describe, write_layer
 from .surface_features import make_features
 

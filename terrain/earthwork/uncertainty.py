@@ -12,9 +12,9 @@ from ...base.sentences import coordinate, counted
 from .. import _kernel
 from ..surface import double_areas
 from .cells import Overlay
-from .covariances import measure_variances
 from .detection import Detection, find_rounding, make_detection, require_level
 from .error_models import as_error_model, find_errors
+from .variances import measure_variances
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

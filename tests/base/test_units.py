@@ -15,7 +15,7 @@ from click.testing import CliRunner
 import tinsmith as ts
 from tinsmith import TIN, OptionError, Survey, Unit
 from tinsmith.base.crs import FOOT, METRE, US_SURVEY_FOOT
-from tinsmith.base.georeference.units import find_ground
+from tinsmith.base.georeference.scales import find_ground
 from tinsmith.cli import main
 
 CORNER = np.array([742_000.0, 4_030_000.0, 300.0])

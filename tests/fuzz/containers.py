@@ -13,7 +13,7 @@ import numpy as np
 import shapely
 
 import tinsmith as ts
-from tinsmith.io.mesh.geopackage import containers
+from tinsmith.io.mesh.geopackage import existing_layers
 
 from .campaign import Campaign, Case
 
@@ -73,7 +73,9 @@ def _write_ours(path: Path, word: str, name: str, tin: ts.TIN, features: ts.Feat
         ts.write(tin, path)
         assert ts.read(path) == tin
     elif word == "fails":
-        with patch.object(containers, "_register", side_effect=sqlite3.OperationalError("full")):
+        with patch.object(
+            existing_layers, "_register", side_effect=sqlite3.OperationalError("full")
+        ):
             ts.write(features, path, layer=name)
     else:
         options = {} if word == "ours" else {word: True}

@@ -15,7 +15,7 @@ from ....base.errors import CrsError, WriteError
 from ....base.sentences import FILE
 from ....terrain.relief import aspect, slope
 from ..common import format_unit, require_tin
-from .containers import Placing, adding_layers
+from .existing_layers import Placing, adding_layers
 from .pages import Column, fill_table, make_blobs, make_integers, make_reals
 from .records import describe_layer_columns, pack_tin
 from .schema import (

@@ -21,7 +21,7 @@ from .surveyed import read_sections
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from ....base.arrays import Float64Array
+    from ....base.arrays import BoolArray, Float64Array
     from ....base.crs import CrsLike, UnitLike
     from ....tin import TIN
     from .channels import Channel, CrossSection
@@ -182,9 +182,10 @@ def _refine(section: CrossSection, strips: list[Strip], number: int) -> Float64A
     ends = [section.offsets]
     ends += [strips[number - 1].last] if number > 0 else []
     ends += [strips[number].first] if number < len(strips) else []
-    places = section.places_at(np.unique(np.concatenate(ends)))
-    is_new = np.append(True, (np.diff(places[:, :2], axis=0) != 0.0).any(axis=1))
-    return places[is_new]
+    places: Float64Array = section.places_at(np.unique(np.concatenate(ends)))
+    is_new: BoolArray = np.append(True, (np.diff(places[:, :2], axis=0) != 0.0).any(axis=1))
+    kept: Float64Array = places[is_new]
+    return kept
 
 
 def _list_strings(strips: list[Strip]) -> list[Breakline]:

@@ -343,13 +343,14 @@ def _build_patch(tin: TIN, stream: Stream, levels: Float64Array, at_shore: Float
         if start != end
     ]
     lines += _list_centreline(waters, nodes, inner)
+    outline: dict[str, Any] = arrange_rings(area, inner)
     return triangulate(
         np.concatenate(rings),
         breaklines=lines,
         duplicates="first",
         crs=tin.crs,
         elevation_unit=tin.elevation_unit,
-        **arrange_rings(area, inner),
+        **outline,
     )
 
 

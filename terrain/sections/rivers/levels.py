@@ -91,7 +91,7 @@ def _pool(
 ) -> tuple[Float64Array, Float64Array]:
     """Return the mean elevation of each group of nodes, and its weight."""
     at = groups[samples.nearest]
-    weights = np.bincount(at, samples.weights, count)
+    weights: Float64Array = np.bincount(at, samples.weights, count).astype(np.float64)
     sums = np.bincount(at, samples.weights * samples.heights, count)
     return np.divide(sums, weights, out=np.zeros(count), where=weights > 0), weights
 

@@ -115,11 +115,11 @@ def _fill(
     is_kept = _find_distinct(a.places_at(first), b.places_at(last), first)
     first, last = first[is_kept], last[is_kept]
     begin, end = a.places_at(first), b.places_at(last)
-    ends = [
+    low, high = (
         measure_channel(channel.centreline, places, one.station, one.name)[:, None]
         for places, one in ((begin, a), (end, b))
-    ]
-    stations, offsets = np.moveaxis(ends[0] + share[:, None] * (ends[1] - ends[0]), 2, 0)
+    )
+    stations, offsets = np.moveaxis(low + share[:, None] * (high - low), 2, 0)
     places = np.empty((len(first), steps + 1, 3))
     flat = channel.centreline.place(stations.ravel(), offsets.ravel())
     places[:, :, :2] = flat.reshape(len(first), steps + 1, 2)

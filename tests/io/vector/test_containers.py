@@ -171,13 +171,13 @@ def test_what_is_no_geopackage_is_not_replaced(tmp_path):
 
 
 def test_a_failed_write_leaves_the_file_whole(project, monkeypatch):
-    from tinsmith.io.mesh.geopackage import containers
+    from tinsmith.io.mesh.geopackage import existing_layers
 
     def fail(*_):
         raise sqlite3.OperationalError("database or disk is full")
 
     before = project.read_bytes()
-    monkeypatch.setattr(containers, "_register", fail)
+    monkeypatch.setattr(existing_layers, "_register", fail)
     for what in (LINES, TIN):
         with pytest.raises(ts.WriteError, match="disk is full"):
             ts.write(what, project)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import tinsmith as ts
-from tinsmith.terrain.earthwork import covariances
+from tinsmith.terrain.earthwork import variances
 
 NAMES = ("cut", "fill", "net")
 UTM = np.array([752_640.0, 4_024_180.0, 320.0])
@@ -207,7 +207,7 @@ def test_pairs_in_cells_are_all_pairs(word):
     away = np.hypot(*(xy[:, None] - xy[None]).transpose(2, 0, 1))
     rho = np.where(away < model.reach, model.correlate(away), 0.0)
     expected = np.einsum("ik,ij,jk->k", loads, rho, loads)
-    assert covariances.measure_variances(xy, loads, model) == pytest.approx(expected, rel=1e-12)
+    assert variances.measure_variances(xy, loads, model) == pytest.approx(expected, rel=1e-12)
 
 
 @pytest.mark.parametrize("word", ["exponential", "spherical", "gaussian"])
@@ -216,10 +216,10 @@ def test_a_lattice_stands_for_many_pairs(word, reach, monkeypatch):
     rng = np.random.default_rng(13)
     xy, loads = rng.random((2500, 2)) * (300, 140) + UTM[:2], rng.random((2500, 2))
     model = ts.ErrorModel(1.0, correlation_range=reach, correlation=word)
-    one_by_one = covariances.measure_variances(xy, loads, model)
-    monkeypatch.setattr(covariances, "_FEW_PAIRS", 0)
-    monkeypatch.setattr(covariances, "_NODES_A_PAIR", 0.0)
-    assert covariances.measure_variances(xy, loads, model) == pytest.approx(one_by_one, rel=0.01)
+    one_by_one = variances.measure_variances(xy, loads, model)
+    monkeypatch.setattr(variances, "_FEW_PAIRS", 0)
+    monkeypatch.setattr(variances, "_NODES_A_PAIR", 0.0)
+    assert variances.measure_variances(xy, loads, model) == pytest.approx(one_by_one, rel=0.01)
 
 
 def test_parts_do_not_matter(monkeypatch):
@@ -228,7 +228,7 @@ def test_parts_do_not_matter(monkeypatch):
     model = ts.ErrorModel(0.05, correlation_range=20.0)
     whole = ts.volume(tin, other, regions=regions, standard_error=model, level_of_detection=0.4)
     monkeypatch.setattr("tinsmith.terrain.earthwork.cells._CHUNK", 17)
-    monkeypatch.setattr(covariances, "_PAIRS_AT_A_TIME", 50)
+    monkeypatch.setattr(variances, "_PAIRS_AT_A_TIME", 50)
     parts = ts.volume(tin, other, regions=regions, standard_error=model, level_of_detection=0.4)
     for name in whole.columns:
         if name != "region":

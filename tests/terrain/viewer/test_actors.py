@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from tinsmith import TIN, Breakline, Water, triangulate
-from tinsmith.base.georeference.units import find_ground
+from tinsmith.base.georeference.scales import find_ground
 from tinsmith.terrain.drawing.linework import add_lines
 from tinsmith.terrain.drawing.palette import interpolate_tints
 from tinsmith.terrain.viewer.actors import (

@@ -11,7 +11,7 @@ import pytest
 
 from tinsmith import triangulate
 from tinsmith.base.crs import METRE
-from tinsmith.base.georeference.units import find_ground
+from tinsmith.base.georeference.scales import find_ground
 from tinsmith.terrain.drawing import make_legend, make_scale_bar
 from tinsmith.terrain.drawing.palette import Palette, interpolate_tints
 from tinsmith.terrain.viewer.actors import add_lights, place_vertices

@@ -10,7 +10,7 @@ import pytest
 from PIL import Image
 
 from tinsmith import triangulate
-from tinsmith.base.georeference.units import find_ground
+from tinsmith.base.georeference.scales import find_ground
 from tinsmith.terrain import preview
 from tinsmith.terrain.viewer.annotations import Layout
 from tinsmith.terrain.viewer.camera import View

@@ -13,7 +13,7 @@ from support.pictures import make_dipping_plane, read_pixels
 
 from tinsmith import TIN, MissingExtraError, triangulate
 from tinsmith.base.crs import FOOT, METRE
-from tinsmith.base.georeference.units import NOT_KNOWN, find_ground
+from tinsmith.base.georeference.scales import NOT_KNOWN, find_ground
 from tinsmith.terrain import OptionError, RenderError, preview, slope
 from tinsmith.terrain.drawing import make_scale_bar
 from tinsmith.terrain.drawing.palette import compute_lightness, interpolate_tints

@@ -14,7 +14,7 @@ from .axes import gives_northing_first as gives_northing_first
 from .axes import label_axes as label_axes
 from .axes import turn_into_drawing as turn_into_drawing
 from .axes import undo_north_up as undo_north_up
-from .units import Ground as Ground
-from .units import find_ellipsoid as find_ellipsoid
-from .units import find_ground as find_ground
-from .units import find_scales as find_scales
+from .scales import Ground as Ground
+from .scales import find_ellipsoid as find_ellipsoid
+from .scales import find_ground as find_ground
+from .scales import find_scales as find_scales

@@ -57,7 +57,7 @@ def riverbed(
     survey = reading.read_survey(sections, need=": cross sections are needed.")
     place: Any = survey
     line = job.read_features(centreline, place, "lines", "a centreline is a line")
-    long = {
+    long: dict[str, Any] = {
         name: None if file is None else job.read_features(file, place, "lines", "lines are needed")
         for name, file in files.items()
     }

@@ -1,4 +1,4 @@
-"""GeoPackages as containers: layers are put into a file whose other layers stay as they are."""
+"""GeoPackages that exist: layers are put into a file whose other layers stay as they are."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Ground: how the coordinates of a TIN are measured on the ground, each in its own unit."""
+"""Scales: how the coordinates of a TIN are measured on the ground, each in its own unit."""
 
 from __future__ import annotations
 
