@@ -146,7 +146,7 @@ def test_products_are_those_of_the_package(tmp_path, survey):
                           SHEETS=tmp_path / "sections.dxf"),
         "stakes": job("stakeout", INPUT="ground", GROUND="flat", GROUND_Z_FIELD="high",
                       POINTS="points", LINE="cut", OUTPUT=tmp_path / "stakes.csv",
-                      LAYER=tmp_path / "stakes.gpkg"),
+                      LAYER=tmp_path / "set_out.gpkg"),
         "volume": job("volume", INPUT="ground", BASE=325, REGIONS="site",
                       OUTPUT=tmp_path / "volume.csv", ZONES=tmp_path / "zones.gpkg",
                       REPORT=tmp_path / "report.pdf"),
@@ -244,7 +244,7 @@ def check_stakes(answer, tin, survey, folder):
     for name in ("elevation", "cut", "fill", "station", "offset"):
         found = read_numbers(folder / "stakes.csv", name, missing=np.nan)
         np.testing.assert_array_equal(found, wanted[name])
-    layer = take_layer(answer, "stakes")
+    layer = take_layer(answer, "set_out")
     assert (layer["count"], layer["crs"]) == (len(at), UTM)
 
 
