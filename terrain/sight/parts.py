@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from ...base.errors import PointsError
 from ...tin.validation import thread_count
 from .. import _kernel
 from ..surface import DividedMesh, sort_by
@@ -58,7 +59,13 @@ def divide(tin: TIN, view: View) -> tuple[DividedMesh, BoolArray]:
     is_seen = np.concatenate([parts[kept] == _SEEN, cells.is_seen[cell]])
     owners = np.concatenate([kept, cells.owners[cell]])
     del cells, cell, fans, kept
-    return DividedMesh.of(points, triangles, owners), is_seen
+    try:
+        return DividedMesh.of(points, triangles, owners), is_seen
+    except PointsError as error:
+        raise PointsError(
+            "What is seen has parts that are thinner than coordinates can tell apart: the eye "
+            "needs another place or height."
+        ) from error
 
 
 def _number_corners(tin: TIN, corners: Float64Array) -> tuple[Float64Array, Int64Array]:
@@ -73,7 +80,26 @@ def _number_corners(tin: TIN, corners: Float64Array) -> tuple[Float64Array, Int6
     number[is_added] = len(tin.points) + np.arange(is_added.sum())
     numbers[order] = number[np.cumsum(is_new) - 1]
     points = np.concatenate([tin.points[:, :2], places[first[is_added]]])
-    return points, numbers[len(tin.points) :]
+    return _join_near(points, numbers[len(tin.points) :], len(tin.points))
+
+
+def _join_near(
+    points: Float64Array, numbers: Int64Array, n_vertices: int
+) -> tuple[Float64Array, Int64Array]:
+    """Make corners one that are nearer to each other, or to a vertex, than coordinates can tell.
+
+    Where one coordinate is near zero, it tells far more than the other: cells between such corners
+    would have no width but for rounding.
+    """
+    places = np.rint(points / (4.0 * np.spacing(np.abs(points).max())))
+    order = sort_by(*places.T)
+    is_new = np.append(True, (np.diff(places[order], axis=0) != 0.0).any(axis=1))
+    target = np.empty(len(points), np.int64)
+    target[order] = order[is_new][np.cumsum(is_new) - 1]
+    own = np.arange(len(points))
+    target[:n_vertices] = own[:n_vertices]
+    is_kept = target == own
+    return points[is_kept], (np.cumsum(is_kept) - 1)[target[numbers]]
 
 
 def _join_thin(tin: TIN, cells: _Cells, parts: UInt8Array) -> tuple[_Cells, UInt8Array]:

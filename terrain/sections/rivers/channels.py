@@ -11,6 +11,7 @@ import numpy as np
 from ....base.errors import LinesError
 from ....base.georeference import require_same_crs
 from ....base.sentences import coordinate, counted, height, inflect
+from ...earthwork.grading import measure_tolerance
 from ...surface import as_features
 
 if TYPE_CHECKING:
@@ -23,8 +24,6 @@ if TYPE_CHECKING:
 
 _SAME = 1e-9
 """Of a section's length: what is nearer along it is one place."""
-_ROUNDINGS = 64
-"""Roundings of coordinates that are added to it."""
 
 
 class CrossSection(NamedTuple):
@@ -349,8 +348,7 @@ def _cross(section: CrossSection, line: Any, name: str) -> tuple[float, float]:
     import shapely
 
     own = shapely.linestrings(section.points[:, :2])
-    largest = float(np.abs(section.points[:, :2]).max())
-    near = _SAME * float(own.length) + _ROUNDINGS * float(np.spacing(largest))
+    near = _SAME * float(own.length) + measure_tolerance(section.points)
     places = shapely.get_coordinates(shapely.intersection(own, line))
     if not len(places):
         ends = shapely.points(section.points[[0, -1], :2])

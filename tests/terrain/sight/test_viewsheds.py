@@ -224,6 +224,16 @@ def test_triangles_are_judged_as_wholes_where_they_cannot_be_divided():
         assert not any("not divided" in note for note in whole.notes)
 
 
+@pytest.mark.parametrize("seed", range(4))
+def test_rays_along_a_rail_have_no_corners_that_coordinates_cannot_tell_apart(seed):
+    rng = np.random.default_rng(seed)
+    xy = np.array([[x, y] for x in range(200) for y in (0.0, 1.0)])
+    z = rng.normal(0.0, 0.1, len(xy))
+    tin = ts.triangulate(np.column_stack([xy + rng.normal(0.0, 1e-9, xy.shape), z]))
+    seen = ts.viewshed(tin, tin.points[0, :2], eye_height=1.7)
+    assert seen.columns["area"].sum() == pytest.approx(tin.area, rel=1e-6)
+
+
 @pytest.mark.skipif(shutil.which("gdal_viewshed") is None, reason="needs gdal_viewshed")
 def test_gdal_sees_the_same_on_a_fine_raster(tmp_path):
     rng = np.random.default_rng(4)

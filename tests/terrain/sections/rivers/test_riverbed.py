@@ -115,6 +115,17 @@ def test_banks_at_the_ends_of_sections_leave_nothing_beyond():
     assert ts.check(bed).ok
 
 
+def test_bank_beside_a_point_stays_beside_it_at_large_coordinates():
+    move = np.array([5e5, 4e6, 0.0])
+    y = 8.002
+    banks = [[[5e5 - 1, 4e6 + y], [5e5 + 101, 4e6 + y]], [[5e5 - 1, 4e6 + 2], [5e5 + 101, 4e6 + 2]]]
+    shape = np.array([[10.0, 5], [8, 1], [0, 5]])
+    sections = [make_section(x, shape=shape) + move for x in (0, 100)]
+    bed = ts.riverbed(sections, np.array(AXIS) + move[:2], spacing=50, banks=banks)
+    chain = dict(zip(bed.lines.names, bed.lines.chains(), strict=True))["left bank"]
+    assert np.abs(bed.points[chain, 2] - (1 + 0.002 * 2)).max() < 1e-6
+
+
 # ---------------------------------------------------------------- a survey
 
 
