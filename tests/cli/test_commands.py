@@ -66,6 +66,9 @@ def test_example_of_the_help_runs_as_written(line, folder, request, monkeypatch)
         pytest.importorskip("pyogrio")
         dem = ("sample_data/jacksboro.tif", "--stride", 8, "--interval", 40)
         run("contours", *dem, "-o", "contours.gpkg")
+    if "before.ply after.ply" in line:
+        run("build", SURVEY, *UTM, "-o", "before.ply")
+        run("build", SURVEY, *UTM, "--codes", "-o", "after.ply")
     run(*line.split()[1:])
     for name in re.findall(r"-o (\S+)", line):
         assert (folder / name).stat().st_size > 0
