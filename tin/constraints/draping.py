@@ -263,7 +263,8 @@ def _follow_surface(
     own = polylines.segments()
     n_own = len(surface.points)
     crossed = mesh.crossed(np.ascontiguousarray(slots[own]), True).reshape(-1, 3)
-    xy = np.concatenate([surface.points[:, :2], np.empty((mesh.slots - n_own, 2))])
+    # Slots that no line uses are checked with all others, and so must hold numbers.
+    xy = np.concatenate([surface.points[:, :2], np.zeros((mesh.slots - n_own, 2))])
     xy[slots[used]] = points[used]
     pairs = np.stack([crossed[:, 0], len(own) + np.arange(len(crossed))], axis=1)
     segments = np.concatenate([slots[own], crossed[:, 1:]]).astype(np.int32)
