@@ -19,9 +19,9 @@ def test_memory_that_nothing_was_written_to_is_not_read(monkeypatch):
             made.fill(np.nan)
         return made
 
-    rng = np.random.default_rng(3)
-    points = rng.uniform(0, 100, (200, 3))
-    ring = [[10.0, 10], [90, 20], [60, 80]]
+    turns = np.linspace(0, 6, 40)
+    points = np.column_stack([30 * np.cos(turns) + 50, 30 * np.sin(turns) + 50, np.zeros(40)])
+    ring = points[:, :2]
     wanted = ts.triangulate(points, boundary=[ring])
     monkeypatch.setattr(draping, "np", SimpleNamespace(**vars(np) | {"empty": make}))
     found = ts.triangulate(points, boundary=[ring])
