@@ -5,7 +5,7 @@ from .grades import grade, outline_patch, require_on_ground
 from .merging import merge
 from .pads import Pad
 from .pasting import join_surfaces, paste
-from .seams import arrange_rings, find_area, measure_tolerance
+from .seams import arrange_rings, find_area, find_first_near, measure_tolerance
 from .slopes import Slope, lie_on, meet_ground, require_ground
 
 __all__ = [
@@ -15,6 +15,7 @@ __all__ = [
     "arrange_rings",
     "balance",
     "find_area",
+    "find_first_near",
     "grade",
     "join_surfaces",
     "lie_on",

@@ -8,6 +8,7 @@ import numpy as np
 
 from ....tin import TIN, triangulate
 from .edge_cells import find_rays
+from .seams import find_first_near
 
 if TYPE_CHECKING:
     from ....base.arrays import Float64Array, Int64Array
@@ -31,7 +32,7 @@ def measure_distances(pad: Any, reach: float, tolerance: float) -> TIN:
     places = np.concatenate([ring, rays.ends + origin])
     distances = np.concatenate([np.zeros(len(ring)), rays.length])
     places = np.column_stack([places, distances])
-    number = _merge(places[:, :2], max(tolerance, _SHARE * reach))
+    number = find_first_near(places[:, :2], max(tolerance, _SHARE * reach))
     ends = number[len(ring) :]
     follows = rays.cell[1:] == rays.cell[:-1]
     tops = np.stack([ends[:-1], ends[1:]], axis=1)
@@ -52,21 +53,6 @@ def measure_distances(pad: Any, reach: float, tolerance: float) -> TIN:
         holes=[edge, *rings[1:]],
         duplicates="last",
     )
-
-
-def _merge(xy: Float64Array, tolerance: float) -> Int64Array:
-    """Return for each place the first one that is the same within a tolerance."""
-    import shapely
-
-    points = shapely.points(xy)
-    pairs = shapely.STRtree(points).query(points, predicate="dwithin", distance=tolerance)
-    first = np.arange(len(xy))
-    while True:
-        least = first.copy()
-        np.minimum.at(least, pairs[0], first[pairs[1]])
-        if (least == first).all():
-            return first
-        first = least
 
 
 def _list_rings(xy: Float64Array, segments: Int64Array, pad: Any) -> list[Float64Array]:

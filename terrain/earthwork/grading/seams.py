@@ -85,6 +85,21 @@ def measure_tolerance(*points: Float64Array) -> float:
     return _ROUNDINGS * float(np.spacing(largest))
 
 
+def find_first_near(xy: Float64Array, tolerance: float) -> Int64Array:
+    """Return for each place the first one that is the same within a tolerance."""
+    import shapely
+
+    points = shapely.points(xy)
+    pairs = shapely.STRtree(points).query(points, predicate="dwithin", distance=tolerance)
+    first = np.arange(len(xy))
+    while True:
+        least = first.copy()
+        np.minimum.at(least, pairs[0], first[pairs[1]])
+        if (least == first).all():
+            return first
+        first = least
+
+
 def find_sides(triangles: Int32Array, n_vertices: int) -> Int64Array:
     """Return the keys of the edges opposite each corner, (m, 3)."""
     corners = triangles[:, [1, 2, 2, 0, 0, 1]].reshape(-1, 2)

@@ -10,7 +10,7 @@ import numpy as np
 from ....base.errors import LinesError
 from ....base.sentences import coordinate
 from ....tin import TIN, Breakline, triangulate
-from ...earthwork.grading import arrange_rings
+from ...earthwork.grading import arrange_rings, find_first_near
 from .rays import NEAR
 
 if TYPE_CHECKING:
@@ -120,7 +120,7 @@ class _Vertices:
 
     def __init__(self, rays: Rays, rows: Rows, bed: Float64Array) -> None:
         xyz, owner, column, is_cut = _place_vertices(rays, rows)
-        number = _merge(xyz[:, :2])
+        number = find_first_near(xyz[:, :2], NEAR)
         lowest = xyz[:, 2].copy()
         np.minimum.at(lowest, number, xyz[:, 2])
         highest = xyz[:, 2].copy()
@@ -313,21 +313,6 @@ def _place_vertices(
     column = np.concatenate([*columns, np.full(len(cuts), 0, np.int64)])
     is_cut = np.arange(len(xyz)) >= count
     return xyz, owner, column, is_cut
-
-
-def _merge(xy: Float64Array) -> Int64Array:
-    """Return for each place the first one that is the same but for rounding."""
-    import shapely
-
-    points = shapely.points(xy)
-    first = np.arange(len(xy))
-    pairs = shapely.STRtree(points).query(points, predicate="dwithin", distance=NEAR)
-    while True:
-        least = first.copy()
-        np.minimum.at(least, pairs[0], first[pairs[1]])
-        if (least == first).all():
-            return first
-        first = least
 
 
 def _chain(edges: list[tuple[int, int]]) -> list[list[int]]:
