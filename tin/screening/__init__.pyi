@@ -8,6 +8,7 @@ from .nodata import describe_suspects as describe_suspects
 from .nodata import find_suspect_elevations as find_suspect_elevations
 from .nodata import parse_nodata as parse_nodata
 from .notes import describe_findings as describe_findings
+from .notes import describe_screening as describe_screening
 from .searching import Screening as Screening
 from .searching import inspect_points as inspect_points
 from .searching import screen_points as screen_points

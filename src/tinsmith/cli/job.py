@@ -308,9 +308,9 @@ class Job:
     # ------------------------------------------------------------ features of a vector file
 
     def read_features(
-        self, given: Path, tin: TIN | TiledPoints, kind: str = "", purpose: str = ""
+        self, given: Path, tin: Survey | TIN | TiledPoints, kind: str = "", purpose: str = ""
     ) -> Features:
-        """Return the features of a vector file, ``FILE:LAYER``, in the CRS of a TIN.
+        """Return the features of a vector file, ``FILE:LAYER``, in the CRS of a surface.
 
         Where "points" are asked for nothing else is taken, where "lines" are no points, and of
         polygons the rings; ``purpose`` ends the refusal. A text table holds points, or the vertices

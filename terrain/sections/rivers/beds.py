@@ -83,7 +83,7 @@ def riverbed(
         The bed from the first section to the last, between their ends. Every point of a section is
         a vertex as it was surveyed. Breaklines are named "section", "left bank", "thalweg" and
         "right bank", and "string" for the others along the channel. ``report.notes`` tell which
-        sections were turned or sorted, and what was left out.
+        sections were turned or sorted, what was left out, and which points look like blunders.
 
     Raises
     ------
@@ -158,6 +158,7 @@ def riverbed(
     )
     notes = (
         *surveyed.notes,
+        *surveyed.screen(),
         *along.notes,
         *channel.notes,
         *describe_unknown(bed.crs, bed.elevation_unit),

@@ -9,8 +9,9 @@ import numpy as np
 from ....base.crs import CRS, Unit, require_one_unit
 from ....base.errors import CrsError, LinesError, OptionError
 from ....base.sentences import coordinate, counted, inflect
-from ....tin import Survey
+from ....tin import Survey, triangulate
 from ....tin.building import find_crs
+from ....tin.screening import describe_screening, screen_points
 from ...surface import as_features
 
 if TYPE_CHECKING:
@@ -31,6 +32,18 @@ class Surveyed(NamedTuple):
     crs: CRS | None
     elevation_unit: Unit | None
     notes: tuple[str, ...]
+
+    def screen(self) -> tuple[str, ...]:
+        """Tell which points look like blunders, which a bed carries on along the channel."""
+        tin = triangulate(np.concatenate(self.lines), crs=self.crs, duplicates="first")
+        ends = np.cumsum([len(line) for line in self.lines])
+
+        def name(rows: Sequence[int]) -> str:
+            section = self.names[int(np.searchsorted(ends, rows[0], side="right"))]
+            x, y = tin.points[rows[0], :2].tolist()
+            return f"{section[:1].lower()}{section[1:]}, {coordinate(x)} {coordinate(y)}"
+
+        return describe_screening(screen_points(tin), name)
 
 
 def read_sections(

@@ -154,6 +154,18 @@ def test_points_of_a_survey_stay_bit_for_bit():
     assert "1 point was left out" in notes
 
 
+def test_a_wrong_shot_is_told_with_its_section_and_place():
+    sections, line = read_wabash()
+    plain = ts.riverbed(sections, line, spacing=50, omit_returns=True, **UTM)
+    assert "blunder" not in " ".join(plain.report.notes)
+    x, y = sections[2][20, :2]
+    for elevation in (0.0, 5081.5):
+        sections[2][20, 2] = elevation
+        bed = ts.riverbed(sections, line, spacing=50, omit_returns=True, **UTM)
+        [told] = [one for one in bed.report.notes if "looks like a blunder" in one]
+        assert f"section 3, {x:.3f} {y:.3f} at elevation {elevation:g}" in told
+
+
 # ---------------------------------------------------------------- what is given
 
 

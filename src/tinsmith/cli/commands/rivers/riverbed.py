@@ -55,10 +55,9 @@ def riverbed(
     planned = job.plan(job.list_inputs(sections, more=more), "TIN")
     reading = job.with_fallback(lines_as="breaklines")
     survey = reading.read_survey(sections, need=": cross sections are needed.")
-    place: Any = survey
-    line = job.read_features(centreline, place, "lines", "a centreline is a line")
+    line = job.read_features(centreline, survey, "lines", "a centreline is a line")
     long: dict[str, Any] = {
-        name: None if file is None else job.read_features(file, place, "lines", "lines are needed")
+        name: None if file is None else job.read_features(file, survey, "lines", "lines are needed")
         for name, file in files.items()
     }
     with job.step("Interpolating") as progress:
