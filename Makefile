@@ -82,11 +82,11 @@ gallery: $(READY) ## Draw the pictures of docs/gallery.md anew
 
 .PHONY: qgis-plugin
 qgis-plugin: ## Pack the QGIS plugin as a zip into build/
-	@$(PYTHON) qgis/make_plugin.py
+	@$(PYTHON) packaging/pack_plug_in.py qgis
 
 .PHONY: blender-addon
 blender-addon: ## Pack the Blender add-on as a zip into build/
-	@$(PYTHON) blender/make_addon.py
+	@$(PYTHON) packaging/pack_plug_in.py blender
 
 .PHONY: web
 web: ## Build the page that triangulates a table in the browser into build/; needs Emscripten

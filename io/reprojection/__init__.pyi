@@ -1,7 +1,7 @@
 # Names that other packages of `io` use, each with the module that has it.
-from .contradictions import are_small_degrees as are_small_degrees
-from .contradictions import checking_crs as checking_crs
-from .contradictions import look_at_crs as look_at_crs
+from .crs_checks import are_small_degrees as are_small_degrees
+from .crs_checks import checking_crs as checking_crs
+from .crs_checks import look_at_crs as look_at_crs
 from .joining import SOURCE_FILE as SOURCE_FILE
 from .joining import join_surveys as join_surveys
 from .placement import DegreesError as DegreesError

@@ -9,7 +9,7 @@ import numpy as np
 from ...base.crs import CRS, require_same_unit
 from ...base.errors import CrsError, ReadError
 from ...base.sentences import FILE, coordinate
-from .contradictions import Places, are_small_degrees
+from .crs_checks import Places, are_small_degrees
 from .transformation import convert_elevations, find_utm_zone, reproject, transform_points
 
 if TYPE_CHECKING:

@@ -32,13 +32,13 @@ from qgis.PyQt.QtGui import QColor
 
 _BROWN = "#8c5a2b"
 _TINTS = (
-    (0.0, "#2f6f5e"),
-    (0.25, "#8fb573"),
-    (0.5, "#e6d79a"),
-    (0.75, "#b98a56"),
-    (1.0, "#f4f1ec"),
+    (0.0, "#4d735d"),
+    (0.25, "#709364"),
+    (0.5, "#adac6c"),
+    (0.75, "#dfc599"),
+    (1.0, "#f3e9df"),
 )
-"""Hypsometric tints from low to high."""
+"""Hypsometric tints from low to high, those of ``interpolate_tints`` in terrain/drawing."""
 _WATER = "#2f6fb0"
 _CERTAINTIES = {"high": "#c62828", "medium": "#ef8f1c", "low": "#f4d03f"}
 _SEEN = {True: "#2e8b3d", False: "#c4533f"}

@@ -83,7 +83,7 @@ def commands(given):
 def kept_processes():
     """Use the processes of one command for the next, but for one test below."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("tinsmith.tiled.running.how.Processes", KeptProcesses)
+        patch.setattr("tinsmith.tiled.running.run_options.Processes", KeptProcesses)
         yield
     KeptProcesses.end()
 
@@ -452,7 +452,7 @@ def test_simplified_in_tiles(lidar, here):
 
 
 def test_surfaces_become_the_file_of_memory(lidar, here, monkeypatch):
-    monkeypatch.setattr("tinsmith.tiled.running.how.Processes", Processes)
+    monkeypatch.setattr("tinsmith.tiled.running.run_options.Processes", Processes)
     options = [lidar, "--classes", "2"]
     done = run("build", *options, "-o", "made.ply", "--tiles", "3", "--workers", "2", "--json")
     assert done.exit_code == 0, done.output

@@ -16,7 +16,7 @@ from support.product_parts import require_same_features
 
 import tinsmith as ts
 from tinsmith.tiled.computing import computing
-from tinsmith.tiled.running.how import How
+from tinsmith.tiled.running.run_options import RunSettings
 
 from .campaign import Campaign, Case
 
@@ -190,7 +190,7 @@ def _compare_point_rasters(case: Case, tin: ts.TIN, cloud: ts.TiledPoints, folde
         except ts.TinsmithError:
             continue
         wanted = ts.write(replace(raster, notes=()), folder / "whole.tif")
-        how = How.of(tiles=case["tiles"], executor=Shuffled(case["seed"]))
+        how = RunSettings.of(tiles=case["tiles"], executor=Shuffled(case["seed"]))
         asked = {"value": value, "spacing": spacing}
         asked |= {"other": plain} if value == "height" else {}
         with computing(surface, "point_rasters", folder / "tiled.tif", how, **asked) as found:
@@ -216,7 +216,7 @@ def _compare_draped(case: Case, tin: ts.TIN, cloud: ts.TiledPoints, folder: Path
     far = xy.max(axis=0) + 2.0 * np.ptp(xy, axis=0)
     lines = [[xy[0], xy[-1], far], [rim[0], rim[1], rim[2]], [far, far + np.ptp(xy, axis=0)]]
     line = np.array(lines[case["seed"] % 3])
-    how = How.of(tiles=case["tiles"], executor=Shuffled(case["seed"]))
+    how = RunSettings.of(tiles=case["tiles"], executor=Shuffled(case["seed"]))
     asked = {"features": line, "outside": "nan"}
     with computing(cloud, "drape", folder / "lines.gpkg", how, **asked) as made:
         require_same_features(made, ts.drape(tin, line, outside="nan"))

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import base64
 import hashlib
-import importlib.util
 import json
 import shutil
 import subprocess
@@ -13,7 +12,7 @@ import zipfile
 from pathlib import Path
 
 import pytest
-from support.qgis_plugin import PLUGIN, drive, make_environment, require_qgis
+from support.qgis_plugin import PLUGIN, drive, make_environment, pack_plug_in, require_qgis
 
 import tinsmith as ts
 
@@ -24,10 +23,7 @@ PROGRAM = "qgis_process.bin"
 
 def install_zip(folder):
     """Unpack the plugin where a profile has its plugins, and return their folder."""
-    spec = importlib.util.spec_from_file_location("make_plugin", PLUGIN / "make_plugin.py")
-    packer = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(packer)
-    with zipfile.ZipFile(packer.pack(folder / "plugin.zip")) as packed:
+    with zipfile.ZipFile(pack_plug_in("qgis", folder / "plugin.zip")) as packed:
         packed.extractall(folder / "plugins")
     return folder / "plugins"
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import configparser
-import importlib.util
 import re
 import sys
 import xml.etree.ElementTree as ET
@@ -13,19 +12,13 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner
 from support import processes
-from support.qgis_plugin import PLUGIN, ROOT
+from support.qgis_plugin import PLUGIN, ROOT, pack_plug_in
 
 import tinsmith
 from tinsmith.cli import main
+from tinsmith.terrain.drawing.palette import interpolate_tints, write_hex
 
 PACKAGE = PLUGIN / "tinsmith"
-
-
-def load_packer():
-    spec = importlib.util.spec_from_file_location("make_plugin", PLUGIN / "make_plugin.py")
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
 
 
 def read_metadata():
@@ -35,7 +28,7 @@ def read_metadata():
 
 
 def test_the_zip_holds_the_plugin_and_nothing_else(tmp_path):
-    path = load_packer().pack(tmp_path / "deep" / "a.zip")
+    path = pack_plug_in("qgis", tmp_path / "deep" / "a.zip")
     tracked = processes.run("git", "ls-files", "qgis/tinsmith", cwd=ROOT).stdout.split()
     untracked = processes.run(
         *("git", "ls-files", "--others", "--exclude-standard", "qgis/tinsmith"), cwd=ROOT
@@ -54,13 +47,17 @@ def test_the_zip_holds_the_plugin_and_nothing_else(tmp_path):
 
 
 def test_the_same_files_give_the_same_bytes(tmp_path):
-    packer = load_packer()
-    first = packer.pack(tmp_path / "a.zip").read_bytes()
+    first = pack_plug_in("qgis", tmp_path / "a.zip").read_bytes()
     (PACKAGE / "metadata.txt").touch()
-    assert packer.pack(tmp_path / "b.zip").read_bytes() == first
-    result = processes.run(sys.executable, str(PLUGIN / "make_plugin.py"), str(tmp_path / "c.zip"))
-    assert result.stdout.strip() == str(tmp_path / "c.zip")
-    assert (tmp_path / "c.zip").read_bytes() == first
+    assert pack_plug_in("qgis", tmp_path / "b.zip").read_bytes() == first
+
+
+def test_elevations_have_the_tints_of_other_pictures():
+    text = (PACKAGE / "styles.py").read_text("utf-8")
+    stops = re.findall(r'\((\d\.\d+), "(#[0-9a-f]{6})"\)', text)
+    ramp = write_hex(interpolate_tints(len(stops)))
+    assert stops == [(str(k / (len(ramp) - 1)), color) for k, color in enumerate(ramp)]
+    assert len(stops) == 5
 
 
 def test_the_metadata_keep_the_rules_of_the_plugin_repository():

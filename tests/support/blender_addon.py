@@ -13,7 +13,9 @@ from pathlib import Path
 
 import pytest
 
-__all__ = ["ADDON", "drive_blender", "load_packer", "load_part"]
+from .qgis_plugin import pack_plug_in
+
+__all__ = ["ADDON", "drive_blender", "load_part"]
 
 ADDON = Path(__file__).parents[2] / "blender"
 _NAME = "tinsmith_in_blender"
@@ -32,20 +34,12 @@ def load_part(name):
     return importlib.import_module(f"{_NAME}.{name}")
 
 
-def load_packer():
-    """Return the script that packs the add-on."""
-    spec = importlib.util.spec_from_file_location("make_addon", ADDON / "make_addon.py")
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
-
-
 def drive_blender(folder, jobs):
     """Install the zip in Blender, run jobs, return the answers; skip where Blender is missing."""
     program = shutil.which("blender")
     if program is None:
         pytest.skip("needs Blender")
-    packed = load_packer().pack(folder / "addon.zip")
+    packed = pack_plug_in("blender", folder / "addon.zip")
     (folder / "jobs.json").write_text(json.dumps(jobs))
     (folder / "home").mkdir()
     answers = folder / "answers.json"

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import random
 from concurrent.futures import Executor, Future
+from pathlib import Path
 from typing import ClassVar
 
 import numpy as np
@@ -41,19 +42,22 @@ class Shuffled(Executor):
 
 
 class KeptProcesses(Processes):
-    """Processes that wait for the tasks of further runs: starting them takes longer than tasks."""
+    """Processes that wait for the tasks of further runs: starting them takes longer than tasks.
+
+    They know relative paths by the folder in which they were started.
+    """
 
     waiting: ClassVar[dict] = {}
 
     def start(self):
         """Return the pool, that of an earlier run if there is one."""
-        self._pool = self._pool or self.waiting.pop(self.workers, None)
+        self._pool = self._pool or self.waiting.pop((self.workers, Path.cwd()), None)
         return super().start()
 
     def close(self):
         """Keep the processes."""
         if self._pool is not None:
-            self.waiting[self.workers] = self._pool
+            self.waiting[self.workers, Path.cwd()] = self._pool
             self._pool = None
 
     @classmethod

@@ -1,4 +1,4 @@
-"""The QGIS plugin, driven in a process of the system's own Python."""
+"""The QGIS plugin, driven in a process of the system's own Python; plug-ins as zips."""
 
 from __future__ import annotations
 
@@ -10,9 +10,10 @@ from pathlib import Path
 
 import pytest
 
+from . import processes
 from .qgis_meshes import has_qgis
 
-__all__ = ["PLUGIN", "ROOT", "drive", "make_environment", "require_qgis"]
+__all__ = ["PLUGIN", "ROOT", "drive", "make_environment", "pack_plug_in", "require_qgis"]
 
 ROOT = Path(__file__).parents[2]
 PLUGIN = ROOT / "qgis"
@@ -22,6 +23,13 @@ _NOISE = ("Warning ", "ERROR ", "HDF5-DIAG")
 
 _PATIENCE = 800
 """Seconds: the machine may be busy."""
+
+
+def pack_plug_in(name, target):
+    """Pack a plug-in as users do, and return the path of the zip."""
+    done = processes.run(sys.executable, "packaging/pack_plug_in.py", name, str(target), cwd=ROOT)
+    assert done.stdout.strip() == str(target), done.stderr
+    return target
 
 
 def require_qgis():

@@ -12,7 +12,7 @@ import tinsmith as ts
 def kept_processes():
     """Use the processes of one call for the next."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("tinsmith.tiled.running.how.Processes", KeptProcesses)
+        patch.setattr("tinsmith.tiled.running.run_options.Processes", KeptProcesses)
         yield
     KeptProcesses.end()
 

@@ -15,7 +15,7 @@ from support.many_files import Shuffled
 import tinsmith as ts
 from tinsmith.tiled.computing import computing
 from tinsmith.tiled.products.mapped import measure_area
-from tinsmith.tiled.running.how import How
+from tinsmith.tiled.running.run_options import RunSettings
 
 CRS = "EPSG:32616"
 ORIGIN = np.array([500_000.0, 4_000_000.0])
@@ -237,7 +237,7 @@ def test_draping_goes_on_where_it_was(folder, store, points, tmp_path, most, dra
 
 def test_parts_of_draped_lines_beside_the_points_are_told(folder, store, tmp_path):
     lines = {"breaklines": [lift([[-40, 100], [340, 110]])[:, :2]]}
-    how = How.of(tiles=2, executor=Shuffled())
+    how = RunSettings.of(tiles=2, executor=Shuffled())
     with computing(tile(folder, store, **lines), "volume", tmp_path / "a", how, base=300.0) as made:
         (note,) = (one for one in made.notes if "draped" in one)
     assert note == "Of 1 draped line the parts outside the surface of the points were left out."

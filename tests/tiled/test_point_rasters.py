@@ -14,7 +14,7 @@ from support.many_files import Shuffled
 import tinsmith as ts
 from tinsmith.tiled.computing import computing
 from tinsmith.tiled.products import point_rasters
-from tinsmith.tiled.running.how import How
+from tinsmith.tiled.running.run_options import RunSettings
 
 
 def read_cells(path):
@@ -28,7 +28,7 @@ def write_without_notes(raster, path):
 
 
 def write_tiled(cloud, path, tiles, **asked):
-    how = How.of(tiles=tiles, executor=Shuffled(tiles))
+    how = RunSettings.of(tiles=tiles, executor=Shuffled(tiles))
     with computing(cloud, "point_rasters", path, how, **asked) as made:
         return write_without_notes(made, path)
 

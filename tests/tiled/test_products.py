@@ -15,7 +15,7 @@ import tinsmith as ts
 from tinsmith.tiled import given
 from tinsmith.tiled.computing import computing
 from tinsmith.tiled.products.mapped import measure_area
-from tinsmith.tiled.running.how import How
+from tinsmith.tiled.running.run_options import RunSettings
 
 SQUARES = {
     "a": [(500_010, 4_000_010), (500_080, 4_000_015), (500_070, 4_000_090)],
@@ -173,7 +173,7 @@ def test_draped_features(cloud, tin, tmp_path, name):
     wanted = ts.drape(tin, FEATURES[name], outside="nan")
     asked = {"features": FEATURES[name], "outside": "nan"}
     for tiles in (1, 16):
-        how = How.of(tiles=tiles, executor=Shuffled(tiles))
+        how = RunSettings.of(tiles=tiles, executor=Shuffled(tiles))
         with computing(cloud, "drape", tmp_path / "a.gpkg", how, **asked) as made:
             require_same_features(made, wanted)
         assert made.crs == wanted.crs

@@ -10,6 +10,7 @@ import math
 from typing import TYPE_CHECKING
 from xml.sax.saxutils import quoteattr
 
+from ....terrain.drawing import interpolate_tints
 from .schema import NO_CLOCK
 
 if TYPE_CHECKING:
@@ -36,9 +37,6 @@ _COLUMNS = (
     *("f_table_catalog", "f_table_schema", "f_table_name", "f_geometry_column", "styleName"),
     *("styleQML", "styleSLD", "useAsDefault", "description", "owner", "update_time"),
 )
-
-_TINTS = ((47, 111, 94), (143, 181, 115), (230, 215, 154), (185, 138, 86), (244, 241, 236))
-"""Colors from low to high, those of the QGIS plugin."""
 
 _CLASSES = 12
 """Most classes of elevations."""
@@ -162,10 +160,8 @@ def _name_class(limits: Sequence[float], k: int, unit: str) -> str:
 
 def _mix(share: float) -> _Color:
     """Return the tint at a share of the ramp."""
-    place = share * (len(_TINTS) - 1)
-    k = min(int(place), len(_TINTS) - 2)
-    low, high = _TINTS[k], _TINTS[k + 1]
-    r, g, b = (round(a + (place - k) * (z - a)) for a, z in zip(low, high, strict=True))
+    ramp = interpolate_tints()
+    r, g, b = ramp[round(share * (len(ramp) - 1))].tolist()
     return r, g, b
 
 

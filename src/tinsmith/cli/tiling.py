@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from ..tiled.cloud import Plan, TiledPoints
-    from ..tiled.running import How, Status
+    from ..tiled.running import RunSettings, Status
     from .outputs import Products
     from .parameters import Decorator
 
@@ -57,7 +57,7 @@ class Tiling:
         return {name: value for name, value in values.items() if value is not None}
 
     @property
-    def way(self) -> dict[str, Any]:
+    def run_options(self) -> dict[str, Any]:
         """Options of products of :class:`tinsmith.TiledPoints`."""
         others = ("plan", "in_place")
         return {name: value for name, value in self.given.items() if name not in others}
@@ -211,7 +211,7 @@ def _may_be_large(file: Path) -> bool:
 
 def _tell_plan(cloud: TiledPoints, job: Job, file: Path) -> None:
     """Tell what a run would do."""
-    plan = cloud.plan(**job.tiling.way)
+    plan = cloud.plan(**job.tiling.run_options)
     facts = Facts(file)
     files = counted(len(cloud.files), "file")
     facts.add("Points", f"about {plan.count:,} in {files}", points=plan.count)
@@ -251,17 +251,20 @@ def compute_tiles(
     output = next((path for path in planned.paths if path != STANDARD), None)
     if output is None:
         raise Failure("Tiles need an output file, beside which the run is kept: name it by -o.")
-    with showing_tiles(job) as how, computing(cloud, product, output, how, **asked) as made:
+    with (
+        showing_tiles(job) as settings,
+        computing(cloud, product, output, settings, **asked) as made,
+    ):
         yield made
 
 
 @contextmanager
-def showing_tiles(job: Job) -> Iterator[How]:
+def showing_tiles(job: Job) -> Iterator[RunSettings]:
     """Yield how a run is carried out, showing how far each step is."""
-    from ..tiled.running import How
+    from ..tiled.running import RunSettings
 
-    with showing_progress(job) as way:
-        yield How.of(**way)
+    with showing_progress(job) as run_options:
+        yield RunSettings.of(**run_options)
 
 
 @contextmanager
@@ -269,7 +272,7 @@ def showing_progress(job: Job) -> Iterator[dict[str, Any]]:
     """Yield the same as options, checked by whom they are handed to."""
     shown = _Shown(job)
     with shown.stack:
-        yield {**job.tiling.way, "progress": shown.take}
+        yield {**job.tiling.run_options, "progress": shown.take}
 
 
 def write_surface(cloud: TiledPoints, job: Job, scales: Mapping[str, Any]) -> Path:
@@ -298,12 +301,12 @@ def write_surface(cloud: TiledPoints, job: Job, scales: Mapping[str, Any]) -> Pa
     if not scales.keys() <= able:
         flag = next(iter(scales)).replace("_", "-")
         raise click.UsageError(f"--{flag} is for --output-format 3dtiles.")
-    with showing_progress(job) as way:
+    with showing_progress(job) as run_options:
         if able:
-            cloud.write(output, format=name, **scales, **job.writing.options, **way)
+            cloud.write(output, format=name, **scales, **job.writing.options, **run_options)
         else:
             chosen: dict[str, Any] = {"format": find_format(name, "write").name} if name else {}
-            cloud.build(output, **chosen, **way)
+            cloud.build(output, **chosen, **run_options)
     note_written(output)
     return output
 

@@ -6,6 +6,6 @@ memory. The steps: ``reading`` (inputs into ``chunks`` of a ``store``), ``divisi
 """
 
 from .cloud import TiledPoints, tiles
-from .running import Status, Way
+from .running import RunOptions, Status
 
-__all__ = ["Status", "TiledPoints", "Way", "tiles"]
+__all__ = ["RunOptions", "Status", "TiledPoints", "tiles"]

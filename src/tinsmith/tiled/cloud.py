@@ -40,7 +40,7 @@ from .computing import computing, labelling
 from .in_place import BYTES_HELD, find_obstacle
 from .lines import KINDS, GivenLines, as_files
 from .reading import join_bounds
-from .running import How, Way, estimate_memory
+from .running import RunOptions, RunSettings, estimate_memory
 
 if TYPE_CHECKING:
     import os
@@ -405,13 +405,13 @@ class TiledPoints:
         inputs = lines.gather(duplicates=self.duplicates, crossing=self.crossing)
         return self if inputs is None else replace(self, lines=lines)
 
-    def plan(self, **way: Unpack[Way]) -> Plan:
+    def plan(self, **options: Unpack[RunOptions]) -> Plan:
         """Tell what a run would do, by the headers alone.
 
         Parameters
         ----------
-        **way
-            See :class:`Way`.
+        **options
+            See :class:`RunOptions`.
 
         Examples
         --------
@@ -424,18 +424,19 @@ class TiledPoints:
         ...     cloud.plan(workers=1).tiles
         1
         """
-        how = How.of(**way)
+        settings = RunSettings.of(**options)
         count, obstacles = self.count_about, self.obstacles
         copied = [header for header, why in zip(self.headers, obstacles, strict=True) if why]
         in_place = len(self.headers) - len(copied)
         return Plan(
             count=count,
-            tiles=max(how.tiles, -(-count // how.tile_points)),
-            tile_points=how.tile_points,
-            workers=how.workers,
-            memory=estimate_memory(min(count, how.tile_points)) + (BYTES_HELD if in_place else 0),
+            tiles=max(settings.tiles, -(-count // settings.tile_points)),
+            tile_points=settings.tile_points,
+            workers=settings.workers,
+            memory=estimate_memory(min(count, settings.tile_points))
+            + (BYTES_HELD if in_place else 0),
             disk=sum(map(_count_about, copied)) * BYTES_ON_DISK,
-            seconds=count / _POINTS_PER_SECOND / how.workers,
+            seconds=count / _POINTS_PER_SECOND / settings.workers,
             in_place=in_place,
             copied=dict(Counter(filter(None, obstacles))) if self.in_place else {},
         )
@@ -464,7 +465,7 @@ class TiledPoints:
         operator: GridOperator | None = None,
         compute_edges: bool = False,
         at: RasterSample = "center",
-        **way: Unpack[Way],
+        **options: Unpack[RunOptions],
     ) -> Path:
         """Write a raster, as :func:`tinsmith.rasterize` makes it of the whole surface.
 
@@ -477,8 +478,8 @@ class TiledPoints:
             Options of the writer.
         spacing, like, value, azimuth, altitude, smooth, operator, compute_edges, at
             As of :func:`tinsmith.rasterize`.
-        **way
-            How the run is carried out, see :class:`Way`.
+        **options
+            How the run is carried out, see :class:`RunOptions`.
 
         Returns
         -------
@@ -506,7 +507,7 @@ class TiledPoints:
         light = {"azimuth": azimuth, "altitude": altitude, "smooth": smooth, "at": at}
         cells = {"operator": operator, "compute_edges": compute_edges, "bounds": self.bounds}
         asked = {"spacing": spacing, "like": like, "value": value, **cells, **light}
-        return self._write("raster", asked, path, (format, write), way)
+        return self._write("raster", asked, path, (format, write), options)
 
     def rasterize_counts(
         self,
@@ -516,13 +517,13 @@ class TiledPoints:
         like: Any = None,
         format: str | None = None,  # noqa: A002 - as in write
         write: Mapping[str, Any] | None = None,
-        **way: Unpack[Way],
+        **options: Unpack[RunOptions],
     ) -> Path:
         """Write how many points lie in each cell, as :func:`tinsmith.rasterize_counts` of all.
 
         Parameters
         ----------
-        path, format, write, **way
+        path, format, write, **options
             As of :meth:`rasterize`.
         spacing, like
             As of :func:`tinsmith.rasterize_counts`.
@@ -552,7 +553,7 @@ class TiledPoints:
         if self.lines is not None:
             raise OptionError("lines", self.lines, "none where points are counted")
         asked = {"value": "count", "spacing": spacing, "like": like, "bounds": self.bounds}
-        return self._write("counts", asked, path, (format, write), way)
+        return self._write("counts", asked, path, (format, write), options)
 
     def rasterize_heights(
         self,
@@ -563,7 +564,7 @@ class TiledPoints:
         like: Any = None,
         format: str | None = None,  # noqa: A002 - as in write
         write: Mapping[str, Any] | None = None,
-        **way: Unpack[Way],
+        **options: Unpack[RunOptions],
     ) -> Path:
         """Write how high the highest point of each cell is above this surface.
 
@@ -571,7 +572,7 @@ class TiledPoints:
 
         Parameters
         ----------
-        path, format, write, **way
+        path, format, write, **options
             As of :meth:`rasterize`.
         above : TiledPoints
             Points whose heights are measured; may be those of the same files, such as
@@ -608,7 +609,7 @@ class TiledPoints:
         """
         cells = {"spacing": spacing, "like": like, "bounds": self.bounds}
         asked = {"value": "height", "other": above, **cells}
-        return self._write("point_rasters", asked, path, (format, write), way)
+        return self._write("point_rasters", asked, path, (format, write), options)
 
     def contours(
         self,
@@ -621,13 +622,13 @@ class TiledPoints:
         base: float = 0.0,
         index: int | None = 5,
         bands: bool = False,
-        **way: Unpack[Way],
+        **options: Unpack[RunOptions],
     ) -> Path:
         """Write contours, as :func:`tinsmith.contours` traces them on the whole surface.
 
         Parameters
         ----------
-        path, format, write, **way
+        path, format, write, **options
             As of :meth:`rasterize`.
         interval, levels, base, index
             As of :func:`tinsmith.contours`.
@@ -656,8 +657,8 @@ class TiledPoints:
         """
         asked: dict[str, Any] = {"interval": interval, "levels": levels, "base": base}
         if as_flag("bands", bands):
-            return self._write("bands", asked, path, (format, write), way)
-        return self._write("contours", {**asked, "index": index}, path, (format, write), way)
+            return self._write("bands", asked, path, (format, write), options)
+        return self._write("contours", {**asked, "index": index}, path, (format, write), options)
 
     def volume(
         self,
@@ -668,13 +669,13 @@ class TiledPoints:
         regions: Any = None,
         format: str | None = None,  # noqa: A002 - as in write
         write: Mapping[str, Any] | None = None,
-        **way: Unpack[Way],
+        **options: Unpack[RunOptions],
     ) -> Path:
         """Write cut and fill to another surface or a base, as :func:`tinsmith.volume` of the whole.
 
         Parameters
         ----------
-        path, format, write, **way
+        path, format, write, **options
             As of :meth:`rasterize`.
         other : TIN or TiledPoints, optional
             Another surface, in memory or in files.
@@ -702,7 +703,7 @@ class TiledPoints:
         'volume.json'
         """
         asked = {"base": base, "other": other, "regions": regions, "crs": self.crs}
-        return self._write("volume", asked, path, (format, write), way)
+        return self._write("volume", asked, path, (format, write), options)
 
     def profile(
         self,
@@ -713,13 +714,13 @@ class TiledPoints:
         start: float = 0.0,
         format: str | None = None,  # noqa: A002 - as in write
         write: Mapping[str, Any] | None = None,
-        **way: Unpack[Way],
+        **options: Unpack[RunOptions],
     ) -> Path:
         """Write the profile along lines, as :func:`tinsmith.profile` of the whole surface.
 
         Parameters
         ----------
-        path, format, write, **way
+        path, format, write, **options
             As of :meth:`rasterize`.
         line, interval, start
             As of :func:`tinsmith.profile`.
@@ -745,7 +746,7 @@ class TiledPoints:
         'profile.csv'
         """
         asked = {"line": line, "interval": interval, "start": start}
-        return self._write("profile", asked, path, (format, write), way)
+        return self._write("profile", asked, path, (format, write), options)
 
     def slope_statistics(
         self,
@@ -755,13 +756,13 @@ class TiledPoints:
         percentiles: ArrayLike = PERCENTILES,
         format: str | None = None,  # noqa: A002 - as in write
         write: Mapping[str, Any] | None = None,
-        **way: Unpack[Way],
+        **options: Unpack[RunOptions],
     ) -> Path:
         """Write the mean slope and its like, as :func:`tinsmith.slope_statistics`.
 
         Parameters
         ----------
-        path, format, write, **way
+        path, format, write, **options
             As of :meth:`rasterize`.
         unit, percentiles
             As of :func:`tinsmith.slope_statistics`.
@@ -788,7 +789,7 @@ class TiledPoints:
         'slopes.csv'
         """
         asked = {"unit": unit, "percentiles": percentiles}
-        return self._write("slopes", asked, path, (format, write), way)
+        return self._write("slopes", asked, path, (format, write), options)
 
     def drape(
         self,
@@ -798,13 +799,13 @@ class TiledPoints:
         outside: OutsidePolicy = "error",
         format: str | None = None,  # noqa: A002 - as in write
         write: Mapping[str, Any] | None = None,
-        **way: Unpack[Way],
+        **options: Unpack[RunOptions],
     ) -> Path:
         """Write points, lines or polygons laid on the surface, as :func:`tinsmith.drape` does.
 
         Parameters
         ----------
-        path, format, write, **way
+        path, format, write, **options
             As of :meth:`rasterize`.
         features, outside
             As of :func:`tinsmith.drape`.
@@ -830,7 +831,7 @@ class TiledPoints:
         'line.geojson'
         """
         asked = {"features": features, "outside": outside}
-        return self._write("drape", asked, path, (format, write), way)
+        return self._write("drape", asked, path, (format, write), options)
 
     def interpolate(
         self,
@@ -839,13 +840,13 @@ class TiledPoints:
         *,
         format: str | None = None,  # noqa: A002 - as in write
         write: Mapping[str, Any] | None = None,
-        **way: Unpack[Way],
+        **options: Unpack[RunOptions],
     ) -> Path:
         """Write the elevations at places, as :meth:`tinsmith.TIN.interpolate` of the whole surface.
 
         Parameters
         ----------
-        path, format, write, **way
+        path, format, write, **options
             As of :meth:`rasterize`.
         places : (k, 2) array, CRS units
             Or a table, data frame or geometries of points. A tile reads those that lie in it.
@@ -879,7 +880,7 @@ class TiledPoints:
         <BLANKLINE>
         """
         output = as_path(path)
-        with computing(self, "places", output, How.of(**way), places=places) as made:
+        with computing(self, "places", output, RunSettings.of(**options), places=places) as made:
             east, north = as_xy(places).T
             unit = None if self.crs is None else self.crs.horizontal_unit
             table = replace(
@@ -895,7 +896,7 @@ class TiledPoints:
         *,
         format: str | None = None,  # noqa: A002 - as in write
         write: Mapping[str, Any] | None = None,
-        **way: Unpack[Way],
+        **options: Unpack[RunOptions],
     ) -> Path:
         """Write the surface that :func:`tinsmith.triangulate` makes as one file, or a file a tile.
 
@@ -916,7 +917,7 @@ class TiledPoints:
             Of a folder, default PLY; one file is PLY.
         write : mapping, optional
             Options of the writer.
-        **way
+        **options
             As of :meth:`rasterize`. Which triangles of a folder share a file depends on it; the
             triangles, and the numbers of vertices, do not.
 
@@ -947,12 +948,12 @@ class TiledPoints:
         output = as_path(path)
         if output.is_dir() or not list_writers(output, None, "TIN"):
             asked = {"format": format or "ply", "write": write}
-            return self._write_folder("surface", asked, output, way)
+            return self._write_folder("surface", asked, output, options)
         if self.lines is not None:
             raise OptionError("lines", self.lines, "none for a surface in one file: write a folder")
         if write:
             raise OptionError("write", write, "left out for one file: its writer has no options")
-        return self._write_blocks("surface_file", output, {"format": format}, way)
+        return self._write_blocks("surface_file", output, {"format": format}, options)
 
     def simplify(
         self,
@@ -961,7 +962,7 @@ class TiledPoints:
         *,
         format: str | None = None,  # noqa: A002 - as in write
         node_points: int = 8_192,
-        **way: Unpack[Way],
+        **options: Unpack[RunOptions],
     ) -> Path:
         """Write a surface of few vertices that is within a tolerance of all points.
 
@@ -979,7 +980,7 @@ class TiledPoints:
             Default by the suffix.
         node_points : int
             Points of a square, about.
-        **way
+        **options
             As of :meth:`rasterize`; the file has the same bytes for any of it.
 
         Returns
@@ -1018,7 +1019,7 @@ class TiledPoints:
             raise OptionError("lines", self.lines, "none where a surface is simplified in tiles")
         name = find_writable(format or find_writer(output, None, ("TIN",)).name)
         asked = {"format": name, "tolerance": tolerance, "node_points": node_points}
-        with computing(self, "simplified", output, How.of(**way), **asked) as made:
+        with computing(self, "simplified", output, RunSettings.of(**options), **asked) as made:
             WRITERS[name](made.blocks, output)
         return output
 
@@ -1031,7 +1032,7 @@ class TiledPoints:
         node_points: int | None = None,
         max_level: int | None = None,
         gzipped: bool | None = None,
-        **way: Unpack[Way],
+        **options: Unpack[RunOptions],
     ) -> Path:
         """Write the surface at several scales for globes: 3D Tiles 1.1, or quantized-mesh tiles.
 
@@ -1059,7 +1060,7 @@ class TiledPoints:
             Of 3D Tiles: points of a square of the finest level, about. Default 8192.
         max_level, gzipped : optional
             Of quantized-mesh tiles: as of their writer.
-        **way
+        **options
             As of :meth:`rasterize`; the files have the same bytes for any of it.
 
         Returns
@@ -1116,10 +1117,14 @@ class TiledPoints:
         asked = {name: value for name, value in given.items() if value is not None}
         for name in asked.keys() - OPTIONS_OF_SCALES[format]:
             raise OptionError(name, asked[name], f"left out for {format}", or_none=True)
-        return self._write_folder(product, asked, path, way)
+        return self._write_folder(product, asked, path, options)
 
     def map(
-        self, function: Callable[[TIN, Bounds], Any], *, run: str | os.PathLike[str], **way: Any
+        self,
+        function: Callable[[TIN, Bounds], Any],
+        *,
+        run: str | os.PathLike[str],
+        **options: Any,
     ) -> list[Any]:
         """Call a function for each tile, with all triangles of the whole that meet it.
 
@@ -1131,8 +1136,8 @@ class TiledPoints:
             returns must be picklable.
         run : path-like
             Folder of the run.
-        **way
-            How the run is carried out, see :class:`Way`.
+        **options
+            How the run is carried out, see :class:`RunOptions`.
 
         Returns
         -------
@@ -1160,12 +1165,12 @@ class TiledPoints:
         6.0
         """
         folder = as_path(run, "run")
-        how = How.of(**{**way, "run": folder})
-        with computing(self, "mapped", folder, how, function=function) as made:
+        settings = RunSettings.of(**{**options, "run": folder})
+        with computing(self, "mapped", folder, settings, function=function) as made:
             found: list[Any] = made
         return found
 
-    def check(self, *, run: str | os.PathLike[str], **way: Any) -> TilesProof:
+    def check(self, *, run: str | os.PathLike[str], **options: Any) -> TilesProof:
         """Prove from outside that the triangles of all tiles are one surface.
 
         Every inner edge has two triangles, across tiles too, which see it in opposite directions;
@@ -1176,8 +1181,8 @@ class TiledPoints:
         ----------
         run : path-like
             Folder of the run.
-        **way
-            How the run is carried out, see :class:`Way`.
+        **options
+            How the run is carried out, see :class:`RunOptions`.
 
         Returns
         -------
@@ -1203,7 +1208,7 @@ class TiledPoints:
         2
         """
         folder = as_path(run, "run")
-        with computing(self, "proof", folder, How.of(**{**way, "run": folder})) as made:
+        with computing(self, "proof", folder, RunSettings.of(**{**options, "run": folder})) as made:
             found: TilesProof = made
         return found
 
@@ -1223,7 +1228,7 @@ class TiledPoints:
         returns: GroundReturns = "last",
         reach: float | None = None,
         ground_only: bool = False,
-        **way: Unpack[Way],
+        **options: Unpack[RunOptions],
     ) -> Path:
         """Write every lidar file again with the classes that :func:`tinsmith.ground` tells.
 
@@ -1240,8 +1245,8 @@ class TiledPoints:
             How far around a tile points are looked at, metres. Default three times ``building``.
         ground_only : bool
             Write ground points alone.
-        **way
-            How the run is carried out, see :class:`Way`.
+        **options
+            How the run is carried out, see :class:`RunOptions`.
 
         Returns
         -------
@@ -1288,7 +1293,7 @@ class TiledPoints:
             "returns": returns,
         }
         asked = {"reach": reach, "ground_only": ground_only, **parameters}
-        with labelling(self, output, How.of(**way), **asked) as made:
+        with labelling(self, output, RunSettings.of(**options), **asked) as made:
             return made.move(output)
 
     def _write(
@@ -1297,27 +1302,35 @@ class TiledPoints:
         asked: Mapping[str, Any],
         path: str | os.PathLike[str],
         writing: tuple[str | None, Mapping[str, Any] | None],
-        way: Way,
+        run_options: RunOptions,
     ) -> Path:
         output = as_path(path)
         name, options = writing
-        with computing(self, product, output, How.of(**way), **asked) as made:
+        with computing(self, product, output, RunSettings.of(**run_options), **asked) as made:
             return write_file(made, output, format=name, **(options or {}))
 
-    def _write_blocks(self, product: str, output: Path, asked: Mapping[str, Any], way: Way) -> Path:
+    def _write_blocks(
+        self, product: str, output: Path, asked: Mapping[str, Any], options: RunOptions
+    ) -> Path:
         """Write one file, in the format that is asked for or else by its suffix."""
         name = asked["format"] or list_writers(output, None, "TIN")[0].name
         writer = WRITERS[find_writable(name)]
-        with computing(self, product, output, How.of(**way), **{**asked, "format": name}) as made:
+        with computing(
+            self, product, output, RunSettings.of(**options), **{**asked, "format": name}
+        ) as made:
             writer(made, output)
         return output
 
     def _write_folder(
-        self, product: str, asked: Mapping[str, Any], path: str | os.PathLike[str], way: Way
+        self,
+        product: str,
+        asked: Mapping[str, Any],
+        path: str | os.PathLike[str],
+        options: RunOptions,
     ) -> Path:
         output = as_path(path)
         with (
-            computing(self, product, output, How.of(**way), **asked) as made,
+            computing(self, product, output, RunSettings.of(**options), **asked) as made,
             replacing_folder(output, marker=made.index) as folder,
         ):
             made.write(folder)

@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from .cloud import TiledPoints
     from .labelled import GroundTiles
     from .lines import GivenLines
-    from .running import How, Phase
+    from .running import Phase, RunSettings
 
 _FEWEST_CELLS, _MOST_CELLS = 64, 1024
 """Rows and columns of the cells in which points are counted before tiles are cut."""
@@ -46,7 +46,7 @@ _TILES = "tiles.json"
 
 @contextmanager
 def computing(
-    cloud: TiledPoints, product: str, output: Path, how: How, **asked: Any
+    cloud: TiledPoints, product: str, output: Path, settings: RunSettings, **asked: Any
 ) -> Iterator[Any]:
     """Read what is not read yet, compute what no record says is done, and yield the product.
 
@@ -57,7 +57,7 @@ def computing(
         Module of :mod:`tinsmith.tiled.products`.
     output : Path
         Where the product is to be written; the folder of the run lies beside it.
-    how : How
+    settings : RunSettings
     **asked
         Options of the product.
 
@@ -69,12 +69,12 @@ def computing(
     chosen = find_product(product)
     if chosen.index:
         require_writable_folder(output, marker=chosen.index)
-    elif output != how.run:
+    elif output != settings.run:
         require_writable(output)
     options = chosen.check_options(**asked)
     lines = None if cloud.lines is None else _Lines.of(cloud.lines, cloud)
     sources = _look_at(cloud)
-    run = Run(how.run or output.with_name(output.name + _SUFFIX))
+    run = Run(settings.run or output.with_name(output.name + _SUFFIX))
     clouds = {_POINTS: cloud}
     if hasattr(asked.get("other"), "headers"):
         clouds[_OTHERS] = asked["other"]
@@ -85,10 +85,10 @@ def computing(
         if _OTHERS in clouds:
             other = clouds[_OTHERS]
             manifest[_OTHERS] = _describe(other, _POINTS, {}, _look_at(other))
-        stack.enter_context(run.opened(manifest, restart=how.restart))
-        with run.refused(), how.started() as start:
+        stack.enter_context(run.opened(manifest, restart=settings.restart))
+        with run.refused(), settings.started() as start:
             stored = [
-                stack.enter_context(_reading(one, run.folder / name, start("Reading"), how))
+                stack.enter_context(_reading(one, run.folder / name, start("Reading"), settings))
                 for name, one in clouds.items()
             ]
             points = stored[0]
@@ -98,9 +98,9 @@ def computing(
                     _require_no_voids([points], "this product")
                 lines = _Lines.of(add_void_rings(points, cloud.lines), cloud)
             if lines is not None:
-                points = lines.prepare(points, run, how, start)
+                points = lines.prepare(points, run, settings, start)
             settled = chosen.settle_options(points, _store(options, run), *stored[1:])
-            tiles = _find_tiles(run, stored[0], how, partial(chosen.divide_points, settled))
+            tiles = _find_tiles(run, stored[0], settings, partial(chosen.divide_points, settled))
             job = TileJob(
                 run.folder,
                 points.folder,
@@ -120,12 +120,14 @@ def computing(
             made = chosen.join(points, {**settled, **arrays}, records, run.folder)
         run.clear_beside(output)
         yield made
-    if not how.keep:
+    if not settings.keep:
         run.remove()
 
 
 @contextmanager
-def labelling(cloud: TiledPoints, folder: Path, how: How, **asked: Any) -> Iterator[GroundTiles]:
+def labelling(
+    cloud: TiledPoints, folder: Path, settings: RunSettings, **asked: Any
+) -> Iterator[GroundTiles]:
     """Find the ground among points, and yield the files that have its classes.
 
     Parameters
@@ -133,7 +135,7 @@ def labelling(cloud: TiledPoints, folder: Path, how: How, **asked: Any) -> Itera
     cloud : TiledPoints
     folder : Path
         Is made if need be.
-    how : How
+    settings : RunSettings
     **asked
         Options of :mod:`tinsmith.tiled.products.ground`.
 
@@ -167,7 +169,7 @@ def labelling(cloud: TiledPoints, folder: Path, how: How, **asked: Any) -> Itera
     )
     path = folder / f"{folder.absolute().name}.vpc"
     try:
-        with computing(chosen, "ground", path, how, **asked) as made:
+        with computing(chosen, "ground", path, settings, **asked) as made:
             yield made
     finally:
         if is_new:
@@ -210,12 +212,12 @@ class _Lines(NamedTuple):
         return cls(given, inputs, describe_lines(inputs))
 
     def prepare(
-        self, points: StoredPoints, run: Run, how: How, start: Callable[[str], Phase]
+        self, points: StoredPoints, run: Run, settings: RunSettings, start: Callable[[str], Phase]
     ) -> StoredPoints:
         """Return points with the lines, cut where they meet, and with elevations."""
         if self.inputs is None:
             return points
-        find_tiles = partial(_find_tiles, points=points, how=how, cut=divide)
+        find_tiles = partial(_find_tiles, points=points, settings=settings, cut=divide)
         drape = Drape(run=run, points=points, phase=start("Draping lines"), find_tiles=find_tiles)
         return prepare_lines(self.given, self.inputs, start("Looking for lines"), drape)
 
@@ -225,11 +227,13 @@ def _look_at(cloud: TiledPoints) -> list[Fingerprint]:
 
 
 @contextmanager
-def _reading(cloud: TiledPoints, folder: Path, phase: Phase, how: How) -> Iterator[StoredPoints]:
+def _reading(
+    cloud: TiledPoints, folder: Path, phase: Phase, settings: RunSettings
+) -> Iterator[StoredPoints]:
     """Read the points of files that are not read yet, and yield them; their folder is held."""
     sources = _look_at(cloud)
     run = Run(cloud.store or folder)
-    with run.opened(_describe(cloud, _POINTS, {}, sources), restart=how.restart):
+    with run.opened(_describe(cloud, _POINTS, {}, sources), restart=settings.restart):
         points = read_inputs(
             run,
             sources,
@@ -276,16 +280,18 @@ def _store(options: Mapping[str, Any], run: Run) -> dict[str, Any]:
 
 
 def _find_tiles(
-    run: Run, points: StoredPoints, how: How, cut: Callable[..., list[Tile]]
+    run: Run, points: StoredPoints, settings: RunSettings, cut: Callable[..., list[Tile]]
 ) -> list[Tile]:
     """Return the tiles of a run: those with which it was begun, else new ones."""
     path = run.folder / _TILES
     if not path.exists():
         side = _FEWEST_CELLS
-        while side < _MOST_CELLS and side**2 < _CELLS_OF_A_POINT * max(points.count, how.tiles):
+        while side < _MOST_CELLS and side**2 < _CELLS_OF_A_POINT * max(
+            points.count, settings.tiles
+        ):
             side *= 2
         counts = count_by_cells(points.open().chunks, points.bounds, side)
-        found = cut(counts, points.bounds, most=how.tile_points, fewest_tiles=how.tiles)
+        found = cut(counts, points.bounds, most=settings.tile_points, fewest_tiles=settings.tiles)
         with replacing(path, binary=False) as file:
             json.dump([[one.key, list(asdict(one.box).values()), one.count] for one in found], file)
     entries = json.loads(path.read_text(encoding="utf-8"))

@@ -7,7 +7,7 @@ import pytest
 
 import tinsmith as ts
 from tinsmith.base.crs import CRS
-from tinsmith.io.reprojection.contradictions import checking_crs
+from tinsmith.io.reprojection.crs_checks import checking_crs
 from tinsmith.io.reprojection.placement import place
 
 NORTH = np.array([0.0, 5e6, 0.0])

@@ -1,4 +1,4 @@
-"""How a run is carried out: by whom, in how much memory, from the start or from where it was."""
+"""Options of a run, and from them the size of a tile: by whom, in how much memory, anew or not."""
 
 from __future__ import annotations
 
@@ -30,8 +30,8 @@ _SHARE = 0.8
 _MEGABYTE = 1 << 20
 
 
-class Way(TypedDict, total=False):
-    """How a run is carried out: options that every product of tiles has.
+class RunOptions(TypedDict, total=False):
+    """Options of a run, which every product of tiles has.
 
     Attributes
     ----------
@@ -69,13 +69,13 @@ class Way(TypedDict, total=False):
 
 
 @dataclass(frozen=True)
-class How:
+class RunSettings:
     """The same, checked.
 
     Attributes
     ----------
     executor, dask, tiles, run, restart, keep, progress
-        As of :class:`Way`.
+        As of :class:`RunOptions`.
     workers : int
     tile_points : int
         Points of a tile, at most.
@@ -104,8 +104,8 @@ class How:
         restart: bool = False,
         keep: bool = False,
         progress: Callable[[Status], None] | None = None,
-    ) -> How:
-        """Check what a caller gave; a :class:`Way`.
+    ) -> RunSettings:
+        """Check what a caller gave; a :class:`RunOptions`.
 
         Raises
         ------
