@@ -1,4 +1,4 @@
-"""Peers in C++: CGAL and Delaunay32, each compiled when it is needed."""
+"""Peers in C++, each compiled when it is needed."""
 
 from .build import PeerMissingError, build_harness
 

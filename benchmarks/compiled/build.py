@@ -15,12 +15,15 @@ from pathlib import Path
 __all__ = ["PeerMissingError", "build_harness"]
 
 HERE = Path(__file__).parent
-SHARED = (HERE / "serve.hpp", Path(__file__))
+SHARED = (*HERE.glob("*.hpp"), Path(__file__))
 BUILT = HERE.parents[1] / "build" / "benchmarks"
 FLAGS = ("-std=c++17", "-O3", "-DNDEBUG", "-march=native")
-DELAUNAY32_VERSION = "0.6.2"
-DELAUNAY32_FOLDER = BUILT / f"delaunay32-{DELAUNAY32_VERSION}"
-DELAUNAY32_ADDRESS = "https://github.com/morishuz/delaunay32"
+SOURCES = {
+    "cdt": ("https://github.com/artem-ogre/CDT", "1.4.4"),
+    "delaunay32": ("https://github.com/morishuz/delaunay32", "v0.6.2"),
+    "detria": ("https://github.com/Kimbatt/detria", "8aa25f3"),
+}
+"""Where the source of a peer is that no package has, and its tag or commit."""
 
 
 class PeerMissingError(Exception):
@@ -70,20 +73,39 @@ def _list_cgal_flags(compiler: str) -> list[str]:
     return ["-frounding-math", "-lmpfr", "-lgmp"]
 
 
-def _list_delaunay32_flags(_: str) -> list[str]:
-    """Of its sources, which are compiled with the harness: there is no package of it."""
-    folder = Path(os.environ.get("DELAUNAY32_SOURCE", DELAUNAY32_FOLDER))
-    sources = sorted(map(str, (folder / "src").glob("*.cpp")))
-    if not sources:
+def _find_source(name: str, header: str) -> Path:
+    """Return the folder of a peer that has no package; ``header`` is a file in it."""
+    address, version = SOURCES[name]
+    usual = BUILT / f"{name}-{version}"
+    variable = f"{name.upper()}_SOURCE"
+    folder = Path(os.environ.get(variable, usual))
+    if not (folder / header).exists():
         raise PeerMissingError(
-            f"its source is not in {folder} (git clone --branch v{DELAUNAY32_VERSION} "
-            f"{DELAUNAY32_ADDRESS} {DELAUNAY32_FOLDER}, or name a copy in DELAUNAY32_SOURCE)"
+            f"its source is not in {folder} (git clone {address} {usual} && "
+            f"git -C {usual} checkout {version}, or name a copy in {variable})"
         )
+    return folder
+
+
+def _list_delaunay32_flags(_: str) -> list[str]:
+    """Of its sources, which are compiled with the harness."""
+    folder = _find_source("delaunay32", "include/delaunay32/delaunay.hpp")
+    sources = sorted(map(str, (folder / "src").glob("*.cpp")))
     return [f"-I{folder / 'include'}", *sources, "-pthread"]
 
 
+def _list_cdt_flags(_: str) -> list[str]:
+    return [f"-I{_find_source('cdt', 'CDT/include/CDT.h') / 'CDT/include'}"]
+
+
+def _list_detria_flags(_: str) -> list[str]:
+    return [f"-I{_find_source('detria', 'include/detria.hpp') / 'include'}"]
+
+
 FLAGS_OF_PEERS: dict[str, Callable[[str], list[str]]] = {
+    "cdt": _list_cdt_flags,
     "cgal": _list_cgal_flags,
     "delaunay32": _list_delaunay32_flags,
+    "detria": _list_detria_flags,
 }
 """By the first word of a harness's name: what the compiler of that name must be told besides."""

@@ -2,10 +2,12 @@
 #pragma once
 
 #include <chrono>
+#include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <iostream>
 #include <string>
+#include <utility>
 #include <vector>
 
 // Appends the pairs of a file of T, each as Made(first, second).
@@ -14,8 +16,19 @@ bool read_pairs(const char* path, std::vector<Made>& made) {
   std::FILE* file = std::fopen(path, "rb");
   if (file == nullptr) return false;
   T pair[2];
-  while (std::fread(pair, sizeof(T), 2, file) == 2) made.emplace_back(pair[0], pair[1]);
+  while (std::fread(pair, sizeof(T), 2, file) == 2) made.push_back(Made{pair[0], pair[1]});
   std::fclose(file);
+  return true;
+}
+
+// Appends the pairs of 64-bit point numbers of a file, each as Made{start, end} of 32 bits.
+template <typename Made>
+bool read_segments(const char* path, std::vector<Made>& made) {
+  std::vector<std::pair<std::int64_t, std::int64_t>> pairs;
+  if (!read_pairs<std::int64_t>(path, pairs)) return false;
+  for (const auto& [start, end] : pairs) {
+    made.push_back(Made{static_cast<std::uint32_t>(start), static_cast<std::uint32_t>(end)});
+  }
   return true;
 }
 

@@ -6,9 +6,18 @@ from functools import partial
 from typing import Any
 
 from ..datasets.lines import LineTask
-from .triangulators import ALL_CORES, CGAL, Tool, count_tin_bytes
+from .triangulators import (
+    ALL_CORES,
+    CDT,
+    CGAL,
+    DELAUNAY32,
+    DELAUNAY32_ALL_CORES,
+    DETRIA,
+    Tool,
+    count_tin_bytes,
+)
 
-__all__ = ["ALL_LINE_TOOLS", "CGAL_INDICES", "LINE_TOOLS"]
+__all__ = ["ALL_LINE_TOOLS", "ARGUMENTS", "CGAL_INDICES", "LINE_TOOLS"]
 
 CGAL_INDICES = "CGAL, by indices"
 """``insert_constraints(points, segments)``; CGAL alone is ``insert_constraint`` by handles."""
@@ -58,4 +67,17 @@ LINE_TOOLS: dict[str, Tool] = {
 }
 """The tools that Python can call, by name."""
 
-ALL_LINE_TOOLS = ("tinsmith", ALL_CORES, CGAL, CGAL_INDICES, "Triangle")
+ALL_LINE_TOOLS = (
+    *("tinsmith", ALL_CORES, CGAL, CGAL_INDICES, DELAUNAY32, DELAUNAY32_ALL_CORES, CDT, DETRIA),
+    "Triangle",
+)
+
+ARGUMENTS = {
+    CGAL: ["handles"],
+    CGAL_INDICES: ["indices"],
+    DELAUNAY32: ["1"],
+    DELAUNAY32_ALL_CORES: ["0"],
+    CDT: [],
+    DETRIA: [],
+}
+"""What the harness of a compiled tool is told besides its files."""

@@ -17,9 +17,11 @@ from tinsmith.base.arrays import AnyArray, Float64Array
 
 __all__ = [
     "ALL_CORES",
+    "CDT",
     "CGAL",
     "DELAUNAY32",
     "DELAUNAY32_ALL_CORES",
+    "DETRIA",
     "KERNEL",
     "KERNEL_ALL_CORES",
     "TOOLS",
@@ -31,7 +33,10 @@ __all__ = [
 ]
 
 
+CDT = "CDT"
+"""By A. Amirkhanov, github artem-ogre/CDT; only for lines, as detria."""
 CGAL = "CGAL"
+DETRIA = "detria"
 DELAUNAY32 = "Delaunay32"
 DELAUNAY32_ALL_CORES = "Delaunay32, all cores"
 KERNEL = "tinsmith kernel"
@@ -75,17 +80,17 @@ class Tool:
 
 def is_compiled(tool: str) -> bool:
     """Whether a tool is a way of using a library in C++, which has a harness of its own."""
-    return tool.startswith((CGAL, DELAUNAY32))
+    return tool.startswith((CDT, CGAL, DELAUNAY32, DETRIA))
 
 
 def name_harness(tool: str, work: str) -> str:
     """Return the name of a compiled tool's harness for ``"points"``, ``"lines"`` or ``"edits"``."""
-    return f"{'cgal' if tool.startswith(CGAL) else 'delaunay32'}_{work}"
+    return f"{tool.partition(',')[0].lower()}_{work}"
 
 
 def is_exact(tool: str, modules: Mapping[str, Tool]) -> bool:
     """Whether a tool claims to be right for any coordinates; Delaunay32's are rounded."""
-    return tool.startswith(CGAL) if is_compiled(tool) else modules[tool].is_exact
+    return tool.startswith((CGAL, DETRIA)) if is_compiled(tool) else modules[tool].is_exact
 
 
 def _pass_points(points: Float64Array) -> Float64Array:
@@ -216,4 +221,4 @@ TOOLS: dict[str, Tool] = {
         triangles=_read_geos_triangles,
     ),
 }
-"""The tools that Python can call, by name; CGAL and Delaunay32 have harnesses of their own."""
+"""The tools that Python can call, by name; those in C++ have harnesses of their own."""

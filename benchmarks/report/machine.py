@@ -7,6 +7,8 @@ import platform
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
+from ..compiled.build import SOURCES
+
 __all__ = ["describe"]
 
 PACKAGES = (
@@ -42,7 +44,7 @@ def describe() -> dict[str, str]:
 
 
 def _find_library_versions() -> dict[str, str]:
-    found = {}
+    found = {name: release.removeprefix("v") for name, (_, release) in SOURCES.items()}
     if CGAL_VERSION.exists():
         lines = CGAL_VERSION.read_text().splitlines()
         found["CGAL"] = next(x.split()[2] for x in lines if x.startswith("#define CGAL_VERSION "))

@@ -50,9 +50,10 @@ HOW_TO_REPEAT = """\
 {command}
 ```
 
-CGAL and Delaunay32 are C++ libraries: with `g++` and CGAL's headers (Debian: `libcgal-dev`), and
-the source of Delaunay32 (the command says where), small programs are compiled. Tools that are not
-installed are skipped and named. Data sets are made by seeded generators in `benchmarks/`.
+CGAL, Delaunay32, CDT and detria are C++ libraries: with `g++` and CGAL's headers (Debian:
+`libcgal-dev`), and the sources of the others (the command says where), small programs are compiled.
+Tools that are not installed are skipped and named. Data sets are made by seeded generators in
+`benchmarks/`.
 """
 KERNEL_NOTES = """\
 Seconds, and in brackets the ratio to the whole call `ts.triangulate(points)`: above 1 tinsmith is
@@ -346,8 +347,10 @@ Seconds for the whole call `ts.triangulate(points, breaklines=lines)`, and in br
 the other libraries to it. tinsmith itself finds which vertices of lines are points, where lines
 cross and which points lie on them; the others are given distinct points and the lines as pairs of
 point numbers, prepared beforehand. CGAL: `insert` all points and `insert_constraint` by vertex
-handles, or `insert_constraints` by indices, exact predicates. Triangle: switches `pcQz`. The number
-of points includes vertices of lines.
+handles, or `insert_constraints` by indices, exact predicates. Delaunay32: as above, on coordinates
+rounded to millimetres. *CDT* is A. Amirkhanov's library of that name, with its own order of
+insertion; *detria* has exact predicates. Triangle: switches `pcQz`. The number of points includes
+vertices of lines.
 
 - *short lines*: uniform points, lines of ten segments; *long lines*: across the whole area
 - *nested rings*: contours of one hill; *hills*: 70 rings on each of many hills

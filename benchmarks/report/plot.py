@@ -10,9 +10,11 @@ from ..measure import OURS, Result
 from ..peers.line_tools import CGAL_INDICES
 from ..peers.triangulators import (
     ALL_CORES,
+    CDT,
     CGAL,
     DELAUNAY32,
     DELAUNAY32_ALL_CORES,
+    DETRIA,
     KERNEL,
     KERNEL_ALL_CORES,
 )
@@ -34,6 +36,8 @@ STYLES: dict[str, dict[str, Any]] = {
     CGAL_INDICES: {"color": "#d1495b", "marker": "D", "s": 30, "zorder": 4, **_HOLLOW},
     DELAUNAY32: {"color": "#7b3f9e", "marker": "D", "s": 42, "zorder": 4},
     DELAUNAY32_ALL_CORES: {"color": "#7b3f9e", "marker": "D", "s": 30, "zorder": 4, **_HOLLOW},
+    CDT: {"color": "#3d7a3d", "marker": "X", "s": 46, "zorder": 3},
+    DETRIA: {"color": "#8a5a33", "marker": "p", "s": 50, "zorder": 3},
     "Triangle": {"color": "#e08e1b", "marker": "^", "s": 46, "zorder": 3},
     "GEOS": {"color": "#66a182", "marker": "s", "s": 36, "zorder": 3},
     "SciPy": {"color": "#8d6a9f", "marker": "v", "s": 46, "zorder": 3},

@@ -1,4 +1,4 @@
-"""Triangulation of points with breaklines beside CGAL and Triangle: seconds and memory.
+"""Triangulation of points with breaklines beside other libraries: seconds and memory.
 
 As in ``kernel``: every tool in a process of its own, in turn, and every answer compared. Ours is
 checked by ``ts.check``, and its lines against edges found in whole numbers.
@@ -21,7 +21,7 @@ from ..compiled import build_harness
 from ..datasets.lines import LEAST_POINTS, LINE_DATASETS, LineTask, make_lines
 from ..measure import Outcome, Result
 from ..peers.answers import Verdict, encode_edges, judge_answer, number_corners, rank_triangles
-from ..peers.line_tools import ALL_LINE_TOOLS, CGAL_INDICES, LINE_TOOLS
+from ..peers.line_tools import ALL_LINE_TOOLS, ARGUMENTS, LINE_TOOLS
 from ..peers.tool_process import ToolFailedError, ToolProcess, make_task_command
 from ..peers.triangulators import is_compiled, is_exact, name_harness
 from .kernel import find_tools, make_result, run_tools
@@ -59,8 +59,8 @@ class LineProcess(ToolProcess):
         plane, segments = folder / "points.bin", folder / "segments.bin"
         task.vertices.tofile(plane)
         task.segments.tofile(segments)
-        way = "indices" if name == CGAL_INDICES else "handles"
-        return [str(build_harness(name_harness(name, "lines"))), str(plane), str(segments), way]
+        harness = build_harness(name_harness(name, "lines"))
+        return [str(harness), str(plane), str(segments), *ARGUMENTS[name]]
 
 
 def _measure_lines(

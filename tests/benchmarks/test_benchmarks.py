@@ -24,7 +24,7 @@ from benchmarks.peers.edit_tools import ALL_EDIT_TOOLS, BUILD, EDIT_TOOLS, OPENE
 from benchmarks.peers.line_tools import ALL_LINE_TOOLS, CGAL_INDICES, LINE_TOOLS
 from benchmarks.peers.programs import find_present, run_program
 from benchmarks.peers.tool_process import ToolFailedError, ToolProcess
-from benchmarks.peers.triangulators import CGAL, DELAUNAY32, KERNEL, TOOLS, is_exact
+from benchmarks.peers.triangulators import CDT, CGAL, DELAUNAY32, DETRIA, KERNEL, TOOLS, is_exact
 from benchmarks.report import page
 from benchmarks.report.__main__ import format_file
 from benchmarks.report.goals import judge_goals as goals_of
@@ -229,15 +229,18 @@ def test_a_missing_cgal_is_said(monkeypatch, tmp_path):
     assert outcome.skipped == ["CGAL: skipped, g++ is not installed."]
 
 
-def test_a_missing_source_of_delaunay32_is_said_with_what_fetches_it(monkeypatch, tmp_path):
+@pytest.mark.parametrize("tool", [DELAUNAY32, CDT, DETRIA])
+def test_a_missing_source_is_said_with_what_fetches_it(monkeypatch, tmp_path, tool):
     monkeypatch.setattr(build, "BUILT", tmp_path / "harness")
     monkeypatch.setattr(build.shutil, "which", lambda name: name)
-    monkeypatch.setenv("DELAUNAY32_SOURCE", str(tmp_path / "none"))
+    monkeypatch.setenv(f"{tool.upper()}_SOURCE", str(tmp_path / "none"))
     outcome = Outcome()
-    assert kernel.find_tools([OURS, DELAUNAY32], TOOLS, "points", outcome) == [OURS]
+    assert kernel.find_tools([OURS, tool], LINE_TOOLS, "lines", outcome) == [OURS]
     (said,) = outcome.skipped
+    address, version = build.SOURCES[tool.lower()]
     assert "its source is not in" in said
-    assert "git clone --branch v0.6.2 https://" in said
+    assert f"git clone {address} " in said
+    assert f" checkout {version}, " in said
 
 
 @pytest.mark.slow
