@@ -16,6 +16,7 @@
 #include "base/parallel.hpp"
 #include "base/point.hpp"
 #include "growth/growth.hpp"
+#include "growth/growth_sample.hpp"
 #include "growth/stitch.hpp"
 #include "growth/work_stealing.hpp"
 #include "hull/convex_hull.hpp"
@@ -87,8 +88,11 @@ class Triangulator {
     std::vector<Vertex> hull = HullFinder(grid, team_).find();
     if (hull.empty() || !team_.keeps_going(0)) return;
     result_.triangle_count = triangle_count(grid.count(), static_cast<std::int64_t>(hull.size()));
-    const bool is_grown = with_path(
-        options_.path, [&](auto tag) { return grow<typename decltype(tag)::Type>(grid, hull); });
+    const bool is_grown = with_path(options_.path, [&](auto tag) {
+      using Near = typename decltype(tag)::Type;
+      if (may_insert() && !GrowthSample<Near>(grid, hull).is_cheap()) return false;
+      return grow<Near>(grid, hull);
+    });
     if (is_grown || team_.is_stopped()) return;
     hull = {};
     insert_all(grid);

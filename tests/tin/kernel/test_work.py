@@ -105,23 +105,30 @@ def test_vector_paths_do_the_same_work(name):
 
 
 @pytest.mark.parametrize(("name", "n"), UNEVEN)
-def test_uneven_data_are_given_up_early(name, n):
-    """Growth that overspends its budget leaves the data to insertion.
-
-    At first a sixty-fourth of 12 units of work a point is granted, then 12 for each vertex
-    finished. So data that are hopeless from the first row on cost less than 5 candidates and rows
-    a point, before insertion begins, where even data take 35 altogether. Points on one circle are
-    not even tried.
-    """
+def test_growth_is_not_begun_on_uneven_data(name, n):
+    """A sample of the vertices tells that insertion is quicker."""
     counts = _kernel.count_work(make_points(name, n))
-    assert counts["searches"] < 0.2 * counts["triangles"]
-    assert counts["candidates"] + counts["cell_rows"] < 6 * n
+    assert counts["searches"] == 0 < counts["walk_steps"]
 
 
-@pytest.mark.parametrize("name", ["rails", "circle", "few circles"])
-def test_points_on_curves_are_given_up_within_the_first_rows(name):
+@pytest.mark.parametrize("kind", ["rails", "circle", "contour lines", "survey tracks"])
+@pytest.mark.parametrize("share", [0.1, 0.5])
+def test_data_that_are_uneven_in_part_are_not_grown_first(kind, share):
+    """Growth and insertion together would cost more than either: half of the points at most."""
+    even = np.random.default_rng(5).random((int(40_000 * (1 - share)), 2))
+    uneven = make_points(kind, int(40_000 * share))[:, :2]
+    uneven = 0.3 * (uneven - uneven.min(axis=0)) / np.ptp(uneven, axis=0).max()
+    for place in ([0.4, 0.4], [1.5, 0.0], [0.0, 1.5]):
+        counts = _kernel.count_work(with_heights(np.vstack([even, uneven + place])))
+        is_grown = counts["walk_steps"] == 0
+        assert is_grown or counts["searches"] < 0.25 * counts["triangles"]
+
+
+@pytest.mark.parametrize("name", ["rails", "few circles"])
+def test_points_too_few_for_a_sample_are_given_up_within_the_first_rows(name):
     """Every search there sees a share of all points: a few of them spend the budget."""
-    counts = _kernel.count_work(make_points(name, N))
+    counts = _kernel.count_work(make_points(name, 8_000))
+    assert counts["walk_steps"] > 0
     assert counts["searches"] < 0.01 * counts["triangles"]
 
 

@@ -76,6 +76,17 @@ class Growth {
     return Outcome::kComplete;
   }
 
+  // Finish all vertices, unless the searches take more work than this.
+  bool is_grown_within(std::int64_t work) {
+    search_.allow(work);
+    try {
+      for (const Vertex v : Ids<Vertex>(own_.begin, own_.end)) finish(v);
+    } catch (const SearchTooCostly&) {
+      return false;
+    }
+    return search_.counts().work() <= work;
+  }
+
   const SearchCounts& counts() { return search_.counts(); }
 
   // The last triangle with a corner before the range, which another thread found too; or
@@ -83,17 +94,19 @@ class Growth {
   Triangle last_shared() const { return last_shared_; }
 
  private:
-  // Even data need about 1 unit of work a point, rasters 5, clusters 18, contour lines 100; from
-  // 12 on insertion is quicker. Threads share the work, while insertion has one: each of them
-  // adds half of that again, for it may not have a core to itself. The budget grows with the
-  // vertices finished, so that hopeless data are given up early.
-  static constexpr std::int64_t kBudgetPerPoint = 12;
+  // In units of a search's work, a point: insertion, and what growth costs besides its searches.
+  static constexpr std::int64_t kInsertion = 24, kGathering = 12;
+  static constexpr std::int64_t kMostPerPoint = 36;  // so that giving up is never that dear
   static constexpr std::int64_t kAdvance = 64;  // at first a sixty-fourth of the points is granted
   static constexpr std::int64_t kLeastBudget = 20000;
 
+  // As much as leaves the rest, if it takes the same a point, no dearer than inserting all points:
+  // the budget grows with the vertices finished, so that hopeless data are given up early.
   std::int64_t budget_at(std::int64_t finished) const {
-    const std::int64_t shared = (count_ * finished / own_.size() + finished) / 2;
-    return kLeastBudget + kBudgetPerPoint * (shared + count_ / kAdvance);
+    const std::int64_t all = own_.size(), left = std::max<std::int64_t>(all - finished, 1);
+    const std::int64_t granted = (kInsertion - kGathering) * (count_ / kAdvance);
+    const std::int64_t per_point = kInsertion * all / left - kGathering;
+    return kLeastBudget + granted + std::min(per_point * finished, kMostPerPoint * all);
   }
 
   void finish(Vertex v) {
