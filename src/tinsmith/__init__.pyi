@@ -46,8 +46,8 @@ from .io import transform_points as transform_points
 from .io import with_lines as with_lines
 from .io import write as write
 from .terrain import *  # noqa: F403
-from .tiled.cloud import TiledPoints as TiledPoints
-from .tiled.cloud import tiles as tiles
+from .tiled.tiled_points import TiledPoints as TiledPoints
+from .tiled.tiled_points import tiles as tiles
 from .tin import *  # noqa: F403
 from .tin.voronoi import voronoi as voronoi
 

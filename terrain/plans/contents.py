@@ -16,7 +16,7 @@ from ...tin.topology import find_offsets
 from ..drawing import EDGE_KINDS, LineEdges, find_line_edges, join_edges, round_down
 from ..isolines import contours, elevation_range
 from .clipping import Paths
-from .marks import gather_marks
+from .point_labels import gather_marks
 
 if TYPE_CHECKING:
     from ...base.arrays import AnyArray, Float64Array
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from ...base.results import Features
     from ...tin import TIN, Survey
     from .footprint import Footprint
-    from .marks import Marking, Marks
+    from .point_labels import Marking, Marks
     from .stations import Stationed
 
 _MOST_LEVELS = 2000

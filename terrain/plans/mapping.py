@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
     from ...base.arrays import AnyArray, BoolArray, Float64Array, Int64Array
     from .contents import Contents
-    from .marks import Marks
+    from .point_labels import Marks
     from .stations import Stationed
     from .windows import MatchLine, Window
 

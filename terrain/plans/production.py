@@ -22,7 +22,6 @@ from .contents import describe_count, gather_contents
 from .footprint import find_footprint
 from .index_sheet import draw_index
 from .mapping import Map
-from .marks import Marking
 from .paper import (
     PLAN_SUFFIXES,
     PURPOSE,
@@ -31,6 +30,7 @@ from .paper import (
     Model,
     NoRoom,
 )
+from .point_labels import Marking
 from .scales import Scale, describe_factor, find_ground_unit, measure_scale_factor
 from .stations import as_stationed, cut_band, require_shown
 from .title_block import (

@@ -14,7 +14,7 @@ import numpy as np
 
 from ....base.sentences import FILE
 from ...isolated import Answer, Refusal
-from .names import APPLICATION
+from .layers import APPLICATION
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -270,7 +270,7 @@ class _Gathered:
 
     def _choose_tolerance(self) -> float:
         """Return a centimetre in the unit of the drawing, a hundredth where it names none."""
-        from .names import UNIT_OF_CODE
+        from .layers import UNIT_OF_CODE
 
         unit = UNIT_OF_CODE.get(self.document.header.get("$INSUNITS", 0))
         return 0.01 / unit.metres if unit is not None and unit.metres else 0.01

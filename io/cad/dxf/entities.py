@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from .names import APPLICATION
+from .layers import APPLICATION
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

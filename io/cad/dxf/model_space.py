@@ -13,7 +13,7 @@ from ....base.errors import CrsError, OptionError, ReadError
 from ....base.sentences import FILE, counted
 from ...isolated import Limits, choose_limits, run_isolated, translate_system_errors
 from ..reference import Stated
-from .names import CRS_PROPERTY, ELEVATION_PROPERTY, UNIT_OF_CODE, UNKNOWN
+from .layers import CRS_PROPERTY, ELEVATION_PROPERTY, UNIT_OF_CODE, UNKNOWN
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -19,8 +19,8 @@ from ...mesh import cut_into_fans, join_places
 from ..drawing import Drawing
 from ..reference import Declared, Measures, choose_measures
 from ..surfaces import Line, Mesh
+from .layers import CONSTRAINED
 from .model_space import ModelSpace, read_model_space
-from .names import CONSTRAINED
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -27,7 +27,7 @@ from ....tin.topology import directed_edges, edge_keys
 from ...registry import select_attributes, warn_of_unknown_elevations
 from ..drawing import choose_length_unit, list_lines, scale_elevations
 from .entities import EntityWriter, Lettering
-from .names import (
+from .layers import (
     APPLICATION,
     CONSTRAINED,
     CRS_PROPERTY,

@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from contextlib import AbstractContextManager
 
     from ..terrain import Features, Raster
-    from ..tiled.cloud import TiledPoints
+    from ..tiled.tiled_points import TiledPoints
     from ..tin import TIN, Survey
     from .options import Coding, Group
     from .output import Console, Facts
@@ -93,6 +93,13 @@ class Job:
     def finish(self, planned: Products, facts: Facts) -> None:
         """Tell what was done: a summary for people, and a record as JSON if it was asked for."""
         self.tell(planned.paths, facts)
+
+    def finish_tin(self, planned: Products, facts: Facts, label: str, tin: TIN) -> None:
+        """Write a TIN, and tell of it with its report."""
+        planned.write("TIN", tin)
+        facts.add_tin(label, tin, report=tin.report.to_dict)
+        facts.note(tin.report.notes)
+        self.finish(planned, facts)
 
     def tell(self, paths: Sequence[Path], facts: Facts) -> None:
         """Tell what was done, and which files were written."""

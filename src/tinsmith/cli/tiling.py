@@ -20,8 +20,8 @@ from .paths import STANDARD
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from ..tiled.cloud import Plan, TiledPoints
     from ..tiled.running import RunSettings, Status
+    from ..tiled.tiled_points import Plan, TiledPoints
     from .outputs import Products
     from .parameters import Decorator
 
@@ -279,7 +279,7 @@ def write_surface(cloud: TiledPoints, job: Job, scales: Mapping[str, Any]) -> Pa
     """Write the surface of tiles as a folder or as one file; ``scales`` are of 3D Tiles."""
     from ..io import find_format
     from ..io.registry import list_writers
-    from ..tiled.cloud import OPTIONS_OF_SCALES
+    from ..tiled.tiled_points import OPTIONS_OF_SCALES
 
     name = (job.writing.output_format or "").strip().lower()
     able = OPTIONS_OF_SCALES.get(name, set())

@@ -5,7 +5,7 @@ memory. The steps: ``reading`` (inputs into ``chunks`` of a ``store``), ``divisi
 ``tasks`` (a tile), ``products``; ``runs`` keeps what is done, ``executors`` and ``workers`` do it.
 """
 
-from .cloud import TiledPoints, tiles
 from .running import RunOptions, Status
+from .tiled_points import TiledPoints, tiles
 
 __all__ = ["RunOptions", "Status", "TiledPoints", "tiles"]

@@ -29,10 +29,10 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from ..tin.building import BuildInputs
-    from .cloud import TiledPoints
     from .labelled import GroundTiles
     from .lines import GivenLines
     from .running import Phase, RunSettings
+    from .tiled_points import TiledPoints
 
 _FEWEST_CELLS, _MOST_CELLS = 64, 1024
 """Rows and columns of the cells in which points are counted before tiles are cut."""

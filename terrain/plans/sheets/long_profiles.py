@@ -32,9 +32,9 @@ from ..title_block import (
     draw_title,
 )
 from .cells import DATUM_PEN, GRID_PEN, Measures, Section, choose_measures, find_pen
+from .cross_sections import MOST_EXAGGERATED, make_model
 from .gathering import Units, describe_elevations, describe_points, name_surfaces
 from .legend import draw_samples, draw_scales
-from .production import MOST_EXAGGERATED, make_model
 from .profile_cells import Gradient, ProfileCell, list_gradients
 
 if TYPE_CHECKING:

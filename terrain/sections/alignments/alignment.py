@@ -19,10 +19,10 @@ from ....base.notes import as_notes
 from ....base.results import Features, Table
 from ....base.sentences import coordinate, counted, inflect, shown
 from ....tin.building import find_crs
+from .arguments import as_numbers, as_places
 from .elements import Element, measure_elements
 from .nearest import Pieces, cut_pieces, find_nearest
 from .stationing import StationEquation, Stationing
-from .values import as_numbers, as_places
 from .verticals import VerticalAlignment
 
 if TYPE_CHECKING:

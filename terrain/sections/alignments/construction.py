@@ -9,8 +9,8 @@ import numpy as np
 
 from ....base.errors import LinesError, OptionError
 from ....base.sentences import coordinate
+from .arguments import as_numbers, as_places
 from .elements import Element
-from .values import as_numbers, as_places
 
 if TYPE_CHECKING:
     from ....base.arrays import Float64Array

@@ -13,7 +13,7 @@ import numpy as np
 from ....base.checks import as_length, as_number
 from ....base.errors import OptionError, choice
 from ....base.sentences import coordinate
-from .values import as_numbers
+from .arguments import as_numbers
 
 if TYPE_CHECKING:
     from ....base.arrays import Float64Array

@@ -1,6 +1,6 @@
 """Staking: lists of points to set out, and coordinates on the ground instead of the grid."""
 
 from .factors import CombinedFactor, combined_factor
-from .lists import stake_points, stakeout
+from .stakeout_points import stake_points, stakeout
 
 __all__ = ["CombinedFactor", "combined_factor", "stake_points", "stakeout"]

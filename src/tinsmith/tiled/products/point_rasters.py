@@ -33,10 +33,10 @@ if TYPE_CHECKING:
     from ...base.arrays import Float64Array
     from ...base.types import Bounds, Grid
     from ...terrain.gridding import CellBlock
-    from ..cloud import TiledPoints
     from ..reading import StoredPoints
     from ..running import Record
     from ..tasks import Part
+    from ..tiled_points import TiledPoints
 
 _MOST_POINTS = 1_000_000
 """That are taken at a time: there may be many more above the ground than in it."""

@@ -16,10 +16,10 @@ from ...terrain.earthwork import as_plane, as_regions
 from ...terrain.parts import volumes
 from ...terrain.surface import Pieces, Reference, Surface, agree_on_reference, make_reference
 from ...tin.tiling import find_triangles_at, triangulate_box, widen
-from ..cloud import TiledPoints
 from ..given import Given, load_given
 from ..reading import open_store, tell_differing
 from ..tasks import HALO, TileProduct, load_arrays, measure_differing, save_arrays
+from ..tiled_points import TiledPoints
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

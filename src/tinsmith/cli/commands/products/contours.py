@@ -19,7 +19,7 @@ from ...tiling import choose_tiles, compute_tiles, tiled_options
 if TYPE_CHECKING:
     from ....base.progress import Tell
     from ....terrain import Features
-    from ....tiled.cloud import TiledPoints
+    from ....tiled.tiled_points import TiledPoints
     from ....tin import TIN
     from ...outputs import Products
 

@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from ....terrain import Features, ProfileSheets, Table
-    from ....tiled.cloud import TiledPoints
+    from ....tiled.tiled_points import TiledPoints
     from ....tin import TIN
     from ...output import Row
     from ...outputs import Products

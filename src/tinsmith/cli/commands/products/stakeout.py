@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 @file_option("--ground", "Ground as it is, for cut and fill: a TIN, or points.")
 @axis_options("LandXML, DXF, vector file or table of an axis: for stations and offsets.")
 @product_options(
-    "terrain.sections.staking.lists.stakeout",
+    "terrain.sections.staking.stakeout_points.stakeout",
     "stations interval layout unit",
     stations="In place of --at: points at these lengths along the axis.",
     interval="In place of --at: at multiples of it along the axis, and where elements meet.",

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from ....terrain import Table
-    from ....tiled.cloud import TiledPoints
+    from ....tiled.tiled_points import TiledPoints
     from ...output import Row
     from ...outputs import Products
 

@@ -46,9 +46,6 @@ def hydroflatten(file: Path, stream: Path, centreline: Path | None, job: Job, **
         line = job.read_features(centreline, tin, "lines", "a centreline is a line")
     with job.step("Flattening") as progress:
         made = flatten(tin, polygons, line, **asked, progress=progress)
-    planned.write("TIN", made)
     facts = Facts(file)
     facts.add("Read", mesh_counts(tin))
-    facts.add_tin("Flattened", made, report=made.report.to_dict)
-    facts.note(made.report.notes)
-    job.finish(planned, facts)
+    job.finish_tin(planned, facts, "Flattened", made)

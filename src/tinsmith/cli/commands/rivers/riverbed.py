@@ -62,8 +62,5 @@ def riverbed(
     }
     with job.step("Interpolating") as progress:
         bed = make_bed(survey, line, **long, **asked, progress=progress)
-    planned.write("TIN", bed)
     facts = Facts(sections)
-    facts.add_tin("Bed", bed, report=bed.report.to_dict)
-    facts.note(bed.report.notes)
-    job.finish(planned, facts)
+    job.finish_tin(planned, facts, "Bed", bed)

@@ -34,9 +34,6 @@ def clip(file: Path, by: Path, outside: bool, job: Job) -> None:
     polygons = job.read_features(by, tin, "polygons")
     with job.step("Clipping") as progress:
         part = clip_tin(tin, polygons, keep="outside" if outside else "inside", progress=progress)
-    planned.write("TIN", part)
     facts = Facts(file)
     facts.add("Read", mesh_counts(tin))
-    facts.add_tin("Clipped", part, report=part.report.to_dict)
-    facts.note(part.report.notes)
-    job.finish(planned, facts)
+    job.finish_tin(planned, facts, "Clipped", part)

@@ -17,7 +17,7 @@ from ...product_options import product_options
 from ...tiling import choose_tiles, describe_points, showing_tiles, tiled_options
 
 if TYPE_CHECKING:
-    from ....tiled.cloud import TiledPoints
+    from ....tiled.tiled_points import TiledPoints
     from ...outputs import Output
 
 _PARAMETERS = (

@@ -40,9 +40,6 @@ def merge(files: tuple[Path, ...], blend: float, job: Job) -> None:
     surfaces = job.read_tins(files)
     with job.step(f"Merging {len(files)} surfaces") as progress:
         merged = merge_tins(surfaces, blend=blend, progress=progress)
-    planned.write("TIN", merged)
     facts = Facts(inputs=[str(file) for file in files])
     facts.extend((f"Surface {k}", mesh_counts(one)) for k, one in enumerate(surfaces, start=1))
-    facts.add_tin("Merged", merged, report=merged.report.to_dict)
-    facts.note(merged.report.notes)
-    job.finish(planned, facts)
+    job.finish_tin(planned, facts, "Merged", merged)

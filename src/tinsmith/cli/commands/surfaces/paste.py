@@ -33,9 +33,6 @@ def paste(base: Path, patch: Path, job: Job) -> None:
     surfaces = job.read_tins(files)
     with job.step("Pasting"):
         pasted = paste_tin(*surfaces)
-    planned.write("TIN", pasted)
     facts = Facts(*files)
     facts.extend(zip(("Base", "Patch"), map(mesh_counts, surfaces), strict=True))
-    facts.add_tin("Pasted", pasted, report=pasted.report.to_dict)
-    facts.note(pasted.report.notes)
-    job.finish(planned, facts)
+    job.finish_tin(planned, facts, "Pasted", pasted)

@@ -1,4 +1,4 @@
-"""Names in drawings: layers with colours, properties, extended data, units (``$INSUNITS``)."""
+"""Layers with colours and widths, names of properties and extended data, units (``$INSUNITS``)."""
 
 from __future__ import annotations
 

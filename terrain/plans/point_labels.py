@@ -1,4 +1,4 @@
-"""Marks: points and spot heights of a plan, and what stands beside each."""
+"""Points and spot heights of a plan, and the label that stands beside each."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Production: sheets of cross sections, from surfaces to files."""
+"""Sheets of cross sections, from surfaces to files."""
 
 from __future__ import annotations
 

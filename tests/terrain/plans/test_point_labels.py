@@ -9,7 +9,7 @@ import shapely
 from support.printed import read_svg
 
 import tinsmith as ts
-from tinsmith.terrain.plans.marks import find_peaks
+from tinsmith.terrain.plans.point_labels import find_peaks
 
 EAST, NORTH = 500_000.0, 4_000_000.0
 ORIGIN = np.array([EAST, NORTH])
