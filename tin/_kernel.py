@@ -11,7 +11,7 @@ with hold_interrupts():
     from . import _core
 
 if TYPE_CHECKING:
-    from ..base.arrays import Float64Array
+    from ..base.arrays import Float64Array, Int32Array
     from ..base.progress import Tell
 
 EXACT_RANGE: tuple[float, float] = (_core.SMALLEST_COORDINATE, _core.LARGEST_COORDINATE)
@@ -118,6 +118,20 @@ def sweep(points: Float64Array, *, threads: int = 1, path: str = VECTOR_PATHS[-1
     if len(swept.triangles) == 0:
         raise PointsError(_explain_no_triangle(len(points), swept.distinct_count))
     return swept
+
+
+def triangulate_mesh(
+    points: Float64Array, *, threads: int, progress: Tell | None = None
+) -> tuple[Mesh, Int32Array | None]:
+    """Triangulate (n, 3) points as :func:`grow` does, for a mesh that will be changed.
+
+    Returns the mesh, whose vertices are numbered by kept rows, and ``kept_row`` as of ``Growth``.
+    Raises PointsError if there is no triangle.
+    """
+    made = _core.triangulate_mesh(points, threads, progress)
+    if made.mesh is None:
+        raise PointsError(_explain_no_triangle(len(points), made.distinct_count))
+    return made.mesh, made.kept_row
 
 
 def _explain_no_triangle(n_rows: int, n_distinct: int) -> str:

@@ -19,7 +19,6 @@ from ..constraints import (
     Polylines,
     accept_noded,
     build_mesh,
-    build_mesh_of_growth,
     conform,
     force,
     node,
@@ -155,14 +154,13 @@ def _merge(
     place = _kernel.snap(rows, options.snap) if options.snap > 0 else None
     own = np.arange(len(rows), dtype=np.int32)
     kept = rows if place is None else rows[place == own]
-    growth = _kernel.grow(kept, threads=threads, progress=progress)
-    place = growth.kept_row if place is None else place
+    mesh, kept_row = _kernel.triangulate_mesh(kept, threads=threads, progress=progress)
+    place = kept_row if place is None else place
     place = own if place is None else place
     is_kept = place == own
     vertex_of = (np.cumsum(is_kept, dtype=np.int32) - np.int32(1))[place]
     points = rows[is_kept]
-    mesh = build_mesh_of_growth(points, growth)
-    del growth, rows, kept  # the mesh holds as much memory
+    del rows, kept
     # vertices get the elevations of their points, before those of lines
     first = np.full(len(points), n, np.int32)
     np.minimum.at(first, vertex_of[:n], own[:n])

@@ -38,7 +38,6 @@ from .polylines import Polylines as Polylines
 from .pslg import Clip as Clip
 from .pslg import Pslg as Pslg
 from .pslg import build_mesh as build_mesh
-from .pslg import build_mesh_of_growth as build_mesh_of_growth
 from .pslg import find_lines_in as find_lines_in
 from .pslg import force as force
 from .ring_cover import Crossing as Crossing

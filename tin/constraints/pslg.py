@@ -129,14 +129,9 @@ class Pslg:
 
 def build_mesh(points: Float64Array, polylines: Polylines, *, threads: int) -> _kernel.Mesh:
     """Triangulate distinct points, and fix the segments of lines that are cut where they meet."""
-    mesh = build_mesh_of_growth(points, _kernel.grow(points, threads=threads))
+    mesh, _ = _kernel.triangulate_mesh(points, threads=threads)
     force(mesh, polylines)
     return mesh
-
-
-def build_mesh_of_growth(points: Float64Array, growth: _kernel.Growth) -> _kernel.Mesh:
-    """Return the triangulation of distinct points as a mesh, with no edge fixed."""
-    return _kernel.Mesh(points, growth.triangles, growth.neighbors)
 
 
 def force(mesh: _kernel.Mesh, polylines: Polylines) -> None:

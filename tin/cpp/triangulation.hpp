@@ -40,6 +40,7 @@ struct Options {
   int threads = 1;
   VectorPath path = vector_paths().back().path;
   bool keeps_sweep = false;  // number vertices in the sweep, where neighbours lie side by side
+  bool is_for_mesh = false;  // what insertion made is not put in order, as it will be changed
 };
 
 struct Triangulation {
@@ -50,6 +51,11 @@ struct Triangulation {
   std::int64_t distinct_count = 0;
   StreamedArray<std::int32_t> rows;  // of each vertex in the sweep, if these are the numbers
   StreamedArray<Point> places;       // likewise
+  // If it is for a mesh: the vertices in the order of the sweep, unless they are of a lattice; and
+  // what was inserted, closed by ghosts, in place of corners and neighbours.
+  std::vector<Vertex> sweep;
+  ScratchArray<GhostTriangle> inserted;
+  std::uint32_t inserted_count = 0;
   SearchCounts counts;
   bool is_complete = true;  // false if asked to stop
 
@@ -84,6 +90,7 @@ class Triangulator {
     if (grid.count() < 3) return;
     rows_of_ = grid.rows();
     if (options_.keeps_sweep) keep_sweep(grid);
+    if (options_.is_for_mesh) list_sweep(grid);
     if (!is_worth_growing(grid)) return insert_all(grid);
     std::vector<Vertex> hull = HullFinder(grid, team_).find();
     if (hull.empty() || !team_.keeps_going(0)) return;
@@ -140,7 +147,10 @@ class Triangulator {
     std::vector<Point> points;
     points.reserve(places.size());
     for (const std::int32_t place : places) points.push_back(lattice.point(place));
-    const Options options{Method::kGrowthOrInsertion, options_.threads, options_.path, false};
+    Options options;
+    options.method = Method::kGrowthOrInsertion;
+    options.threads = options_.threads;
+    options.path = options_.path;
     const auto count = static_cast<std::int64_t>(points.size());
     const Triangulation made = Triangulator({&points[0].x, count, 2}, options, [this] {
                                  return team_.keeps_going(0);
@@ -279,6 +289,13 @@ class Triangulator {
     Insertion insertion(grid, team_);
     if (!insertion.run()) return;
     result_.counts.walk_steps = insertion.walk_steps();
+    if (options_.is_for_mesh) {
+      insertion.number_by(rows_of_);
+      result_.inserted_count = insertion.triangles().count();
+      result_.inserted = insertion.take();
+      return;
+    }
+    insertion.number_by_sweep();
     CanonicalOrder order(grid, insertion.triangles(), team_);
     if (!order.count()) return;
     result_.triangle_count = order.triangles();
@@ -294,6 +311,13 @@ class Triangulator {
     for (const Vertex v : Ids<Vertex>(grid.count())) {
       result_.rows[number(v)] = number(rows_of_[number(v)]);
       result_.places[number(v)] = grid.point(v);
+    }
+  }
+
+  void list_sweep(const PointGrid& grid) {
+    result_.sweep.reserve(grid.count());
+    for (const Vertex v : Ids<Vertex>(grid.count())) {
+      result_.sweep.push_back(Vertex{number(rows_of_[number(v)])});
     }
   }
 

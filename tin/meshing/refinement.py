@@ -19,7 +19,7 @@ from ...base.progress import Progress
 from ...base.sentences import counted
 from .. import _kernel, topology
 from ..building import Version
-from ..constraints import build_mesh_of_growth, find_lines_in
+from ..constraints import find_lines_in
 from ..report import Unmended
 from ..surface import TIN
 from ..triangulation import Triangulation
@@ -364,10 +364,11 @@ def _triangulate(
     of the TIN that are in the way of each other when they are split.
     """
     done, points = Progress(progress), pslg.points
-    growth = _kernel.grow(points, threads=threads, progress=done.stage(0.0, 0.6))
-    if growth.kept_row is not None:
-        return found.splits.segments_of(np.flatnonzero(growth.kept_row != np.arange(len(points))))
-    mesh = build_mesh_of_growth(points, growth)
+    mesh, kept_row = _kernel.triangulate_mesh(
+        points, threads=threads, progress=done.stage(0.0, 0.6)
+    )
+    if kept_row is not None:
+        return found.splits.segments_of(np.flatnonzero(kept_row != np.arange(len(points))))
     in_the_way = _force(mesh, pslg, found.splits)
     if in_the_way is not None:
         return in_the_way

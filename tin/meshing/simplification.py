@@ -17,7 +17,7 @@ from ...base.policies import SimplificationHold, SimplificationSide
 from ...base.progress import Progress
 from .. import _kernel, topology
 from ..building import Version
-from ..constraints import build_mesh_of_growth, find_lines_in
+from ..constraints import find_lines_in
 from ..editing import account_for_edits, account_for_removed, renumber_vertices
 from ..report import Simplification
 from ..surface import TIN
@@ -308,10 +308,11 @@ class _Part:
         return [*followed, followed[0]]
 
     def _build(self, points: Float64Array) -> tuple[Triangulation, Int32Array]:
-        growth = _kernel.grow(points, threads=self.threads)
-        mesh = build_mesh_of_growth(points, growth)
+        mesh, kept_row = _kernel.triangulate_mesh(points, threads=self.threads)
+        if kept_row is not None:
+            raise _describe_overlap()
         passed, blocked = mesh.force(self._pslg.polylines.segments())
-        if growth.kept_row is not None or len(passed) or len(blocked):
+        if len(passed) or len(blocked):
             raise _describe_overlap()
         try:
             hull = Triangulation(points, *mesh.arrays(self.threads))

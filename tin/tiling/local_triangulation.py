@@ -284,20 +284,19 @@ def _sweep(known: NumberedPoints, threads: int) -> _Made:
 
 
 def _triangulate_constrained(points: Float64Array, seen: _Seen, threads: int) -> _Made:
-    growth = _kernel.grow(points, threads=threads)
-    kept = _choose_kept(points, growth.kept_row)
-    mesh = _kernel.Mesh(kept, growth.triangles, growth.neighbors)
+    mesh, kept_row = _kernel.triangulate_mesh(points, threads=threads)
+    kept = _choose_kept(points, kept_row)
     names = np.searchsorted(seen.points.numbers, seen.segments.names)
-    if growth.kept_row is not None:
-        is_kept = growth.kept_row == np.arange(len(growth.kept_row))
-        names = (np.cumsum(is_kept) - 1)[growth.kept_row[names]]
+    if kept_row is not None:
+        is_kept = kept_row == np.arange(len(kept_row))
+        names = (np.cumsum(is_kept) - 1)[kept_row[names]]
     segments = np.unique(names[names[:, 0] != names[:, 1]], axis=0)
     passed, blocked = mesh.force(segments.astype(np.int32))
     if len(passed) or len(blocked):
         raise AssertionError("lines were not cut at all places where they meet")
-    first = _choose_kept(seen.points.numbers, growth.kept_row)
+    first = _choose_kept(seen.points.numbers, kept_row)
     places = np.ascontiguousarray(kept[:, :2])
-    return _Made(places, *mesh.arrays(threads), None, growth.kept_row, first)
+    return _Made(places, *mesh.arrays(threads), None, kept_row, first)
 
 
 def _choose_kept(rows: AnyArray, kept_row: Int32Array | None) -> AnyArray:

@@ -64,17 +64,32 @@ class SweptMesh {
   const Vertex* sweep_of_;
 };
 
-// `Mesh` is one of both.
-template <typename Mesh>
+// Points in the order of the sweep, where they are not stored in it.
+class PointsInSweep {
+ public:
+  // By vertex, and the vertices in the order of the sweep. Both must outlive this.
+  PointsInSweep(const Point* points, const std::vector<Vertex>& sweep)
+      : points_(points), sweep_(sweep) {}
+
+  std::int32_t count() const { return static_cast<std::int32_t>(sweep_.size()); }
+  Point point(Vertex v) const { return points_[number(sweep_[number(v)])]; }
+
+ private:
+  const Point* points_;
+  const std::vector<Vertex>& sweep_;
+};
+
+// `Points` is a PointGrid or PointsInSweep, `Mesh` SweptTriangles or a SweptMesh.
+template <typename Points, typename Mesh>
 class CanonicalOrder {
  public:
   // All must outlive the order.
-  CanonicalOrder(const PointGrid& grid, const Mesh& mesh, Team& team)
-      : grid_(grid),
+  CanonicalOrder(const Points& points, const Mesh& mesh, Team& team)
+      : points_(points),
         team_(team),
         mesh_(mesh),
         number_of_(scratch_array<Triangle>(mesh.count())),
-        end_of_(grid.count() + std::size_t{1}) {}
+        end_of_(points.count() + std::size_t{1}) {}
 
   // Find how many triangles there are without ghosts. Returns false if the team is stopped.
   bool count() {
@@ -100,7 +115,7 @@ class CanonicalOrder {
     neighbors_ = out.neighbors;
     return in_blocks(mesh_.count(),
                      is_shared() ? &CanonicalOrder::deal<true> : &CanonicalOrder::deal<false>) &&
-           in_blocks(grid_.count(), &CanonicalOrder::order_stars) &&
+           in_blocks(points_.count(), &CanonicalOrder::order_stars) &&
            in_blocks(mesh_.count(), [&](std::int64_t begin, std::int64_t end) {
              write_neighbors(begin, end, write_more);
            });
@@ -223,7 +238,7 @@ class CanonicalOrder {
       star.add({Vertex{corner[1]}, Vertex{corner[2]}, neighbors_[i]});
     }
     star.put_in_order([this, v](Vertex a, Vertex b) {
-      return compare_distances(grid_.point(v), grid_.point(a), grid_.point(b));
+      return compare_distances(points_.point(v), points_.point(a), points_.point(b));
     });
     for (const StarOrder::Ray& ray : star) {
       std::int32_t* const corner = corners_ + std::int64_t{3} * begin;
@@ -250,7 +265,7 @@ class CanonicalOrder {
     }
   }
 
-  const PointGrid& grid_;
+  const Points& points_;
   Team& team_;
   Mesh mesh_;
   ScratchArray<Triangle> number_of_;  // of each triangle of the mesh; kNoTriangle of ghosts

@@ -10,6 +10,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "../base/arrays.hpp"
@@ -35,12 +36,24 @@ class Insertion {
     triangles_ = scratch_array<GhostTriangle>(triangle_count());
     team_.expect(count_);
     if (!insert_parts() || !merge_parts()) return false;
-    number_by_sweep();
+    order_.points.release();
     return true;
   }
 
-  // The triangulation, as long as this lives.
+  // The corners are numbered by their positions in the sweep, or as `number_of` each of these. The
+  // triangulation lasts as long as this lives, or is taken.
+  void number_by_sweep() {
+    number_corners([this](Vertex v) { return order_.sweep_of[v]; });
+    order_.sweep_of.release();
+  }
+  void number_by(const Row* number_of) {
+    number_corners([this, number_of](Vertex v) {
+      if (v == kGhost) return kGhost;
+      return Vertex{number(number_of[number(order_.sweep_of[v])])};
+    });
+  }
   SweptTriangles triangles() const { return {triangles_.get(), triangle_count()}; }
+  ScratchArray<GhostTriangle> take() { return std::move(triangles_); }
 
   // Triangles that were walked through to find where points go.
   std::int64_t walk_steps() const { return walk_steps_; }
@@ -96,15 +109,14 @@ class Insertion {
     return true;
   }
 
-  void number_by_sweep() {
-    order_.points.release();
-    team_.run([this](int member) {
+  template <typename NumberOf>
+  void number_corners(const NumberOf& number_of) {
+    team_.run([&](int member) {
       const Range own = part_of(triangle_count(), member, team_.size());
       for (std::int32_t t = own.begin; t < own.end; ++t) {
-        for (Vertex& corner : triangles_[t].corner) corner = order_.sweep_of[corner];
+        for (Vertex& corner : triangles_[t].corner) corner = number_of(corner);
       }
     });
-    order_.sweep_of.release();
   }
 
   Team& team_;

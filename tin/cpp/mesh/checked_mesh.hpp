@@ -26,15 +26,23 @@ struct VertexPairs {
 class CheckedMesh {
  public:
   explicit CheckedMesh(MeshEditor editor) : editor_(std::move(editor)) {}
+  // With the vertices in the order of the sweep, where they are known.
+  CheckedMesh(MeshEditor editor, std::vector<Vertex> sweep)
+      : editor_(std::move(editor)), sweep_(std::move(sweep)) {}
 
   const MeshEditor& editor() const { return editor_; }
-  MeshEditor& editor() { return editor_; }  // for those who are never mistaken
+  MeshEditor& editor() {  // for those who are never mistaken
+    sweep_ = {};
+    return editor_;
+  }
+  const std::vector<Vertex>& sweep() const { return sweep_; }  // empty if it is not known
 
   // The vertex at each point, in the order given: a new slot's, or the one that is there already.
   void insert(const Point* points, std::int32_t count, std::int32_t* result) {
     if (std::int64_t{count} + editor_.slots() > kMostPoints) {
       throw std::invalid_argument("more points than 32-bit indices can number");
     }
+    sweep_ = {};
     const std::int32_t first = editor_.slots();
     for (std::int32_t i = 0; i < count; ++i) editor_.add_slot();
     const HilbertOrder order(points, count);
@@ -49,11 +57,13 @@ class CheckedMesh {
     if (!is_slot(slot) || editor_.mesh().is_alive(slot)) {
       throw std::invalid_argument("the slot must be one whose vertex was removed");
     }
+    sweep_ = {};
     return editor_.insert(p, slot);
   }
 
   // Whether all were removed; stops at the first without which there would be no triangle.
   bool remove(const std::int32_t* vertices, std::size_t count) {
+    if (count > 0) sweep_ = {};
     for (std::size_t i = 0; i < count; ++i) {
       const Vertex v = checked(Vertex{vertices[i]});
       if (editor_.has_fixed_edge(v)) throw std::invalid_argument("a fixed edge ends at the vertex");
@@ -153,6 +163,7 @@ class CheckedMesh {
   }
 
   MeshEditor editor_;
+  std::vector<Vertex> sweep_;
 };
 
 }  // namespace tinsmith

@@ -98,15 +98,19 @@ inline MeshEditor editor_of(const PointRows& rows, const GivenTriangles& given) 
 // vertices are numbered in the order of their slots, without gaps.
 class MeshArrays {
  public:
-  // If wished with which triangles are marked.
-  MeshArrays(const MeshEditor& editor, Team& team, bool tells_marks = false)
+  // If wished with which triangles are marked. `known` are the vertices in the order of the sweep,
+  // or none; all slots hold a vertex where they are known.
+  MeshArrays(const MeshEditor& editor, Team& team, bool tells_marks = false,
+             const std::vector<Vertex>& known = {})
       : editor_(editor), mesh_(editor.mesh()) {
     release_freed_memory();
     if (editor.count() < editor.slots()) gather_vertices();
     const Point* const points = points_.empty() ? editor.points().begin() : points_.data();
-    const PointGrid grid({&points->x, editor.count(), 2}, team);
-    const WithGhost<Vertex> sweep_of = find_sweep(grid, team);
-    CanonicalOrder order(grid, mesh_.swept(sweep_of.begin()), team);
+    const std::vector<Vertex> found = known.empty() ? find_sweep(points, team) : std::vector<Vertex>();
+    const std::vector<Vertex>& sweep = known.empty() ? found : known;
+    const WithGhost<Vertex> sweep_of = positions_in(sweep, team);
+    const PointsInSweep in_sweep(points, sweep);
+    CanonicalOrder order(in_sweep, mesh_.swept(sweep_of.begin()), team);
     if (!order.count()) return;
     triangle_count = static_cast<std::uint32_t>(order.triangles());
     const std::size_t size = 3 * std::size_t{triangle_count};
@@ -125,7 +129,7 @@ class MeshArrays {
     team.run([&](int member) {
       const Range own = part_of(triangle_count, member, team.size());
       for (std::int64_t i = std::int64_t{3} * own.begin; i < std::int64_t{3} * own.end; ++i) {
-        corners[i] = number(grid.rows()[corners[i]]);
+        corners[i] = number(sweep[corners[i]]);
       }
     });
   }
@@ -146,15 +150,26 @@ class MeshArrays {
     }
   }
 
-  // Of each slot its vertex's position in the sweep.
-  WithGhost<Vertex> find_sweep(const PointGrid& grid, Team& team) const {
-    WithGhost<Vertex> sweep_of(editor_.slots());
-    sweep_of[kGhost] = kGhost;
+  // Numbers of points in the order of the sweep.
+  std::vector<Vertex> find_sweep(const Point* points, Team& team) const {
+    const PointGrid grid({&points->x, editor_.count(), 2}, team);
+    std::vector<Vertex> sweep(grid.count());
     team.run([&](int member) {
       const Range own = part_of(grid.count(), member, team.size());
-      for (const Vertex v : Ids<Vertex>(own.begin, own.end)) {
-        const Vertex given{number(grid.rows()[number(v)])};
-        sweep_of[slot_of_.empty() ? given : slot_of_[number(given)]] = v;
+      for (std::int32_t i = own.begin; i < own.end; ++i) sweep[i] = Vertex{number(grid.rows()[i])};
+    });
+    return sweep;
+  }
+
+  // Of each slot its vertex's position in the sweep.
+  WithGhost<Vertex> positions_in(const std::vector<Vertex>& sweep, Team& team) const {
+    WithGhost<Vertex> sweep_of(editor_.slots());
+    sweep_of[kGhost] = kGhost;
+    const auto count = static_cast<std::int32_t>(sweep.size());
+    team.run([&](int member) {
+      const Range own = part_of(count, member, team.size());
+      for (std::int32_t i = own.begin; i < own.end; ++i) {
+        sweep_of[slot_of_.empty() ? sweep[i] : slot_of_[number(sweep[i])]] = Vertex{i};
       }
     });
     return sweep_of;

@@ -120,7 +120,8 @@ class HeldMesh {
     MeshArrays made = [&] {
       ReleasedLock release;
       Team team(threads, [] { return true; });
-      return MeshArrays(held_->editor(), team);
+      const CheckedMesh& held = *held_;
+      return MeshArrays(held.editor(), team, false, held.sweep());
     }();
     const std::size_t size = made.triangle_count;
     return std::make_tuple(hand_over<Triples>(std::move(made.corners), {size, 3}),

@@ -6,23 +6,24 @@
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
+#include <memory>
 #include <optional>
 #include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "../mesh/triangulated_mesh.hpp"
 #include "../triangulation.hpp"
+#include "bind_mesh.hpp"
 #include "conversion.hpp"
 
 namespace tinsmith::python {
 
-inline Triangulation triangulate(const GivenXyz& points, Method method, int threads,
-                                 const std::string& path, const Listener::Tell& tell = {},
-                                 bool keeps_sweep = false) {
+inline Triangulation triangulate(const GivenXyz& points, const Options& options,
+                                 const Listener::Tell& tell) {
   const PointRows rows = rows_of(points);
-  if (threads < 1) throw std::invalid_argument("at least one thread is needed");
-  const Options options{method, threads, vector_path_named(path), keeps_sweep};
+  if (options.threads < 1) throw std::invalid_argument("at least one thread is needed");
   Triangulation made = [&] {
     ReleasedLock release;
     Listener listener(tell);
@@ -31,6 +32,17 @@ inline Triangulation triangulate(const GivenXyz& points, Method method, int thre
   }();
   if (!made.is_complete) throw nb::python_error();
   return made;
+}
+
+inline Triangulation triangulate(const GivenXyz& points, Method method, int threads,
+                                 const std::string& path, const Listener::Tell& tell = {},
+                                 bool keeps_sweep = false) {
+  Options options;
+  options.method = method;
+  options.threads = threads;
+  options.path = vector_path_named(path);
+  options.keeps_sweep = keeps_sweep;
+  return triangulate(points, options, tell);
 }
 
 struct GrownArrays {
@@ -71,6 +83,29 @@ inline SweptArrays sweep(const GivenXyz& points, int threads, const std::string&
           hand_over<Xy>(std::move(places), {count, 2}),
           std::move(kept_row),
           made.distinct_count};
+}
+
+struct TriangulatedMesh {
+  std::optional<HeldMesh> mesh;  // none if all points are collinear
+  std::optional<Numbers> kept_row;
+  std::int64_t distinct_count;
+};
+
+inline TriangulatedMesh triangulate_mesh(const GivenXyz& points, int threads,
+                                         const Listener::Tell& tell) {
+  Options options;
+  options.threads = threads;
+  options.is_for_mesh = true;
+  Triangulation made = triangulate(points, options, tell);
+  std::optional<HeldMesh> mesh;
+  if (made.inserted_count > 0 || made.triangle_count > 0) {
+    ReleasedLock release;
+    MeshEditor editor = editor_of_triangulation(rows_of(points), made);
+    mesh.emplace(std::make_shared<CheckedMesh>(std::move(editor), std::move(made.sweep)));
+  }
+  std::optional<Numbers> kept_row;
+  if (!made.kept_row.empty()) kept_row = hand_over(made.kept_row);
+  return {std::move(mesh), std::move(kept_row), made.distinct_count};
 }
 
 inline nb::dict count_work(const GivenXyz& points, Method method, int threads,
@@ -120,6 +155,12 @@ inline void bind_triangulation(nb::module_& m) {
       .def_ro("distinct_count", &SweptArrays::distinct_count, "How many places there are.");
   m.def("sweep", &sweep, "points"_a.noconvert(), "threads"_a, "path"_a,
         "The triangulation of points, numbered in the sweep.");
+  Result<TriangulatedMesh>(m, "TriangulatedMesh", "The triangulation of points, as a mesh.")
+      .def_array("kept_row", &TriangulatedMesh::kept_row, "As that of Growth.")
+      .def_ro("mesh", &TriangulatedMesh::mesh, "None if all points are collinear.")
+      .def_ro("distinct_count", &TriangulatedMesh::distinct_count, "How many places there are.");
+  m.def("triangulate_mesh", &triangulate_mesh, "points"_a.noconvert(), "threads"_a,
+        "progress"_a = nb::none(), "Triangulate points that will be changed.");
   m.def("count_work", &count_work, "points"_a.noconvert(), "method"_a = Method::kAutomatic,
         "threads"_a = 1, "path"_a = fastest, "Triangulate and return how much the searches did.");
   m.def("vector_paths", &names_of_vector_paths,
