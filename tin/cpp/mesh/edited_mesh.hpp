@@ -263,7 +263,7 @@ class EditedMesh {
     const std::size_t most = kLeastEdits + static_cast<std::size_t>(given_.count) / kShare;
     return steps_.size() > most || part_->mesh().store().scans() > kMostScans;
   }
-  static constexpr std::size_t kLeastEdits = 64, kShare = 128;
+  static constexpr std::size_t kLeastEdits = 64, kShare = 64;
   static constexpr int kMostScans = 4;
 
   void make_whole() {

@@ -37,6 +37,7 @@ class AllTriangles {
   const GhostTriangle* data() const { return triangles_.data(); }
   const GhostTriangle& operator[](Triangle t) const { return triangles_[number(t)]; }
   GhostTriangle& operator[](Triangle t) { return triangles_[number(t)]; }
+  Vertex corner(Triangle t, std::uint32_t k) const { return (*this)[t].corner[k]; }
   HalfEdge twin(HalfEdge e) const { return (*this)[triangle_of(e)].twin[corner_of(e)]; }
   const GhostTriangle& complete(Triangle t) const { return (*this)[t]; }
   // Of the fixed edges, by corner, both sides of an edge alike; and marks.
@@ -81,9 +82,9 @@ class BasicMesh {
 
   // ------------------------------------------------------------------ reading
 
-  Vertex apex(HalfEdge e) const { return triangle(e).corner[corner_of(e)]; }
-  Vertex from(HalfEdge e) const { return triangle(e).corner[corner_after(corner_of(e))]; }
-  Vertex to(HalfEdge e) const { return triangle(e).corner[corner_before(corner_of(e))]; }
+  Vertex apex(HalfEdge e) const { return store_.corner(triangle_of(e), corner_of(e)); }
+  Vertex from(HalfEdge e) const { return apex(after(e)); }
+  Vertex to(HalfEdge e) const { return apex(before(e)); }
   HalfEdge twin(HalfEdge e) const { return store_.twin(e); }
   static HalfEdge after(HalfEdge e) {
     return half_edge(triangle_of(e), corner_after(corner_of(e)));
@@ -131,10 +132,10 @@ class BasicMesh {
 
   bool is_fixed(HalfEdge e) const { return bits(triangle_of(e)) >> corner_of(e) & 1; }
   bool is_ghost(Triangle t) const {
-    const auto& c = (*this)[t].corner;
-    return c[0] == kGhost || c[1] == kGhost || c[2] == kGhost;
+    return store_.corner(t, 0) == kGhost || store_.corner(t, 1) == kGhost ||
+           store_.corner(t, 2) == kGhost;
   }
-  bool is_free(Triangle t) const { return (*this)[t].corner[0] == kFree; }
+  bool is_free(Triangle t) const { return store_.corner(t, 0) == kFree; }
   // Its corners; the twins by twin(), or of a complete one.
   const GhostTriangle& operator[](Triangle t) const { return store_[t]; }
   const GhostTriangle& complete(Triangle t) const { return store_.complete(t); }
@@ -309,8 +310,6 @@ class BasicMesh {
     bool is_fixed;
   };
   Side side(HalfEdge e) const { return {twin(e), is_fixed(e)}; }
-
-  const GhostTriangle& triangle(HalfEdge e) const { return (*this)[triangle_of(e)]; }
 
   GhostTriangle& at(Triangle t) { return store_[t]; }
   std::uint8_t& bits(Triangle t) { return store_.bits(t); }

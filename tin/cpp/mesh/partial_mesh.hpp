@@ -1,8 +1,9 @@
-// A mesh of given arrays of which only the triangles that are touched are copied: the first edits
-// of a large surface do not wait for a copy of all of it.
+// A mesh of given arrays of which only the triangles that change are copied: the first edits of a
+// large surface do not wait for a copy of all of it.
 //
 // Triangles have the numbers of the arrays; ghosts and those that are made come behind them. A
-// vertex that was in no change has the triangles of the arrays.
+// vertex that was in no change has the triangles of the arrays. A triangle that was in none is read
+// where it is: whoever changes one changes its neighbours too, so theirs are as the arrays say.
 #pragma once
 
 #include <algorithm>
@@ -26,14 +27,33 @@
 
 namespace tinsmith {
 
+// What is added stays where it is.
+template <typename T>
+class Blocks {
+ public:
+  std::uint32_t size() const { return size_; }
+  T& operator[](std::uint32_t i) const { return blocks_[i / kBlock][i % kBlock]; }
+  // The number of one more, which is anything.
+  std::uint32_t add() {
+    if (size_ % kBlock == 0) blocks_.emplace_back(new T[kBlock]);
+    return size_++;
+  }
+
+ private:
+  static constexpr std::uint32_t kBlock = 256;
+
+  std::vector<std::unique_ptr<T[]>> blocks_;
+  std::uint32_t size_ = 0;
+};
+
 class TouchedTriangles {
  public:
   static constexpr bool kFindsVertices = true;
 
   // Rows and arrays stay as they are and as long as this does.
   TouchedTriangles(const PointRows& rows, const GivenTriangles& given)
-      : rows_(rows), given_(given), slots_(static_cast<std::uint32_t>(given.count)) {
-    const std::size_t count = page_of(Triangle{slots_}) + 1;
+      : rows_(rows), given_(given) {
+    const std::size_t count = page_of(Triangle{first_own()}) + 1;
     pages_.reset(static_cast<Cell**>(std::calloc(count, sizeof(Cell*))));
     if (!pages_) throw std::bad_alloc();
   }
@@ -41,16 +61,23 @@ class TouchedTriangles {
   // Searches that went through all triangles.
   int scans() const { return scans_; }
 
-  std::uint32_t slots() const { return slots_; }
-  const GhostTriangle& operator[](Triangle t) const { return cell(t).triangle; }
+  std::uint32_t slots() const { return first_own() + own_.size(); }
   GhostTriangle& operator[](Triangle t) { return cell(t).triangle; }
-  HalfEdge twin(HalfEdge e) const { return twin(e, cell(triangle_of(e)).triangle); }
+  Vertex corner(Triangle t, std::uint32_t k) const {
+    return is_as_given(t) ? given_corner(t, k) : cell(t).triangle.corner[k];
+  }
+  HalfEdge twin(HalfEdge e) const {
+    const Triangle t = triangle_of(e);
+    return is_as_given(t) ? given_or_ghost_twin(e) : twin(e, cell(t).triangle);
+  }
   const GhostTriangle& complete(Triangle t) const {
     GhostTriangle& found = cell(t).triangle;
     for (const HalfEdge e : half_edges(t)) twin(e, found);
     return found;
   }
-  std::uint8_t bits(Triangle t) const { return cell(t).bits; }
+  std::uint8_t bits(Triangle t) const {
+    return is_as_given(t) ? given_.fixed_bits(t) : cell(t).bits;
+  }
   std::uint8_t& bits(Triangle t) { return cell(t).bits; }
 
   Triangle add() { return add_cell(); }
@@ -70,15 +97,12 @@ class TouchedTriangles {
   // One of the arrays' that may be near, and may be gone.
   Vertex vertex_near(Point p) const {
     const Triangle t = triangle_near(p);
-    const Vertex v = corner(t, 0);
+    const Vertex v = given_corner(t, 0);
     if (leaving_.find(key(v)) == nullptr) leaving_.put(key(v), number(half_edge(t, 2)));
     return v;
   }
 
  private:
-  // Triangles of the arrays are copied by pages of some that follow each other.
-  static constexpr std::uint32_t kPage = 8;
-  static constexpr std::size_t kPagesInBlock = 64;
   static constexpr int kMostSteps = 1000;
   static constexpr std::int32_t kBeside = 10;
 
@@ -87,23 +111,30 @@ class TouchedTriangles {
     std::uint8_t bits;
   };
 
+  // Triangles of the arrays are copied by pages of some that follow each other.
+  static constexpr std::uint32_t kPage = 4;
+  struct Page {
+    Cell cells[kPage];
+  };
+  static std::size_t page_of(Triangle t) { return number(t) / kPage; }
+
   static std::uint32_t key(Vertex v) { return static_cast<std::uint32_t>(number(v)); }
-  Vertex corner(Triangle t, std::uint32_t k) const {
+  Vertex given_corner(Triangle t, std::uint32_t k) const {
     return Vertex{given_.corners[entry_of(t, k)]};
   }
 
-  static std::size_t page_of(Triangle t) { return number(t) / kPage; }
+  bool is_given(Triangle t) const { return index_of(t) < given_.count; }
+  bool is_as_given(Triangle t) const { return is_given(t) && pages_[page_of(t)] == nullptr; }
 
   Cell& cell(Triangle t) const {
-    if (index_of(t) >= given_.count) return own_cell(number(t) - first_own());
+    if (!is_given(t)) return own_[number(t) - first_own()];
     Cell*& page = pages_[page_of(t)];
     if (page == nullptr) page = copy_page(number(t) - number(t) % kPage);
     return page[number(t) % kPage];
   }
 
   Cell* copy_page(std::uint32_t first) const {
-    if (n_pages_ % kPagesInBlock == 0) blocks_.emplace_back(new Cell[kPage * kPagesInBlock]);
-    Cell* const page = blocks_.back().get() + kPage * (n_pages_++ % kPagesInBlock);
+    Cell* const page = copies_[copies_.add()].cells;
     const std::uint32_t count = std::min(kPage, first_own() - first);
     for (std::uint32_t i = 0; i < count; ++i) copy(Triangle{first + i}, page[i]);
     return page;
@@ -111,21 +142,17 @@ class TouchedTriangles {
 
   // Those behind the arrays.
   std::uint32_t first_own() const { return static_cast<std::uint32_t>(given_.count); }
-  Cell& own_cell(std::uint32_t i) const { return own_[i / kOwnBlock][i % kOwnBlock]; }
   Triangle add_cell() const {
-    const Triangle t{slots_++};
-    const std::uint32_t i = number(t) - first_own();
-    if (i % kOwnBlock == 0) own_.push_back(std::make_unique<Cell[]>(kOwnBlock));
-    own_cell(i) = {};
-    return t;
+    const std::uint32_t place = own_.add();
+    own_[place] = {};
+    return Triangle{first_own() + place};
   }
-  static constexpr std::uint32_t kOwnBlock = 256;
 
   // Which corner of the triangle across an edge is opposite to it, nobody knows who does not look
   // at that triangle; twin() does when it is asked, and what is not known to it has no corner yet.
   void copy(Triangle t, Cell& made) const {
     for (std::uint32_t k = 0; k < 3; ++k) {
-      made.triangle.corner[k] = corner(t, k);
+      made.triangle.corner[k] = given_corner(t, k);
       made.triangle.twin[k] = unentered(triangle_numbered(given_.neighbors[entry_of(t, k)]));
     }
     made.bits = given_.fixed_bits(t);
@@ -135,15 +162,11 @@ class TouchedTriangles {
   HalfEdge twin(HalfEdge e, GhostTriangle& triangle) const {
     HalfEdge& known = triangle.twin[corner_of(e)];
     if (corner_of(known) != kNoCorner) return known;
-    const Triangle t = triangle_of(e);
-    if (index_of(t) >= given_.count) {
-      known = ghost_twin(e);
-    } else if (known == kNoHalfEdge) {
-      known = half_edge(ghost_at(e), 0);
-    } else {
-      known = given_.twin(t, triangle_of(known));
-    }
+    known = is_given(triangle_of(e)) ? given_or_ghost_twin(e) : ghost_twin(e);
     return known;
+  }
+  HalfEdge given_or_ghost_twin(HalfEdge e) const {
+    return is_outer(e) ? half_edge(ghost_at(e), 0) : given_twin(e);
   }
 
   // As Mesh holds them, of the arrays.
@@ -163,7 +186,7 @@ class TouchedTriangles {
     outer_edges_.put(number(ghost), number(e));
     const std::uint32_t k = corner_of(e);
     Cell& made = cell(ghost);
-    made.triangle = {{kGhost, corner(t, corner_before(k)), corner(t, corner_after(k))},
+    made.triangle = {{kGhost, given_corner(t, corner_before(k)), given_corner(t, corner_after(k))},
                      {e, kNoHalfEdge, kNoHalfEdge}};
     made.bits = static_cast<std::uint8_t>(given_.fixed_bits(t) >> k & 1);
     return ghost;
@@ -207,7 +230,7 @@ class TouchedTriangles {
 
   std::uint32_t corner_at(Triangle t, Vertex v) const {
     for (std::uint32_t k = 0; k < 3; ++k) {
-      if (corner(t, k) == v) return k;
+      if (given_corner(t, k) == v) return k;
     }
     return kNoCorner;
   }
@@ -215,8 +238,8 @@ class TouchedTriangles {
   // The triangle across an edge that has p on its other side, tried from a corner on.
   std::int32_t towards(Triangle t, Point p, std::uint32_t k) const {
     for (int i = 0; i < 3; ++i, k = corner_after(k)) {
-      const Point a = rows_[number(corner(t, corner_after(k)))];
-      const Point b = rows_[number(corner(t, corner_before(k)))];
+      const Point a = rows_[number(given_corner(t, corner_after(k)))];
+      const Point b = rows_[number(given_corner(t, corner_before(k)))];
       if (orientation(a, b, p) < 0) return given_.neighbors[entry_of(t, k)];
     }
     return kNoNeighbor;
@@ -235,11 +258,10 @@ class TouchedTriangles {
 
   PointRows rows_;
   GivenTriangles given_;
-  // What is copied when it is looked at.
-  mutable std::uint32_t slots_;
+  // What is copied when it changes, and ghosts made when they are looked at.
   mutable std::unique_ptr<Cell*[], FreeMemory> pages_;
-  mutable std::vector<std::unique_ptr<Cell[]>> blocks_, own_;
-  mutable std::size_t n_pages_ = 0;
+  mutable Blocks<Page> copies_;
+  mutable Blocks<Cell> own_;
   mutable NumberTable leaving_, ghosts_, outer_edges_;
   mutable TriangleSamples samples_;
   mutable int scans_ = 0;
