@@ -79,6 +79,7 @@ def test_geopackages_pass_the_validator_of_gdal(tmp_path, made):
     validator = find_gdal_validator("validate_gpkg.py")
     surfaces = write_each(made, (ts.TIN, ts.Features), ".gpkg", tmp_path)
     surfaces["survey"] = ts.write(ts.Survey(points=HILL.points, crs=HILL.crs), tmp_path / "s.gpkg")
+    surfaces["compact"] = ts.write(HILL, tmp_path / "compact.gpkg", compact=True)
     both = ts.write(made["contours"], tmp_path / "both.gpkg")
     surfaces["two layers"] = ts.write(made["catchments"], both)
     faults = {}

@@ -15,7 +15,17 @@ import numpy as np
 from ....base.sentences import FILE
 from ...isolated import Answer, Refusal
 from .page_reading import decode_integers, read_columns
-from .schema import POINT, RECORD, TRIANGLE, declare_layer, digest_arrays, digest_lines
+from .schema import (
+    FORMER_NUMBERS,
+    NUMBERS,
+    POINT,
+    RECORD,
+    TRIANGLE,
+    declare_layer,
+    declare_numbers,
+    digest_arrays,
+    digest_lines,
+)
 
 if TYPE_CHECKING:
     from ....base.arrays import AnyArray, BoolArray, Float64Array
@@ -35,14 +45,14 @@ def read_tables(path: str) -> Answer:
     """
     try:
         with closing(_open(path)) as file:
-            _require_plain_tables(file)
+            table = _require_plain_tables(file)
             size = Path(path).stat().st_size
             texts, arrays = _read_record(file)
             lines = file.execute("SELECT geom, kind, name FROM lines ORDER BY fid")
             rows = [row for row in lines if [type(one) for one in row] == [bytes, str, str]]
-            mesh = _read_as_written(path, file, texts["digests"])
+            mesh = _read_as_written(path, file, table, texts["digests"])
             if mesh is None:
-                triangles = _read_triangles(file, size)
+                triangles = _read_triangles(file, table, size)
                 mesh = {
                     "points": _read_points(file),
                     "triangles": triangles["corners"].copy(),
@@ -61,24 +71,29 @@ def _open(path: str) -> sqlite3.Connection:
     return file
 
 
-def _require_plain_tables(file: sqlite3.Connection) -> None:
-    """Refuse views and virtual tables in place of tables; then allow reading only."""
+def _require_plain_tables(file: sqlite3.Connection) -> str:
+    """Refuse views and virtual tables in place of tables; then allow reading only.
+
+    Return the table of triangles, which may stand beside a view of that name.
+    """
     rows = file.execute("SELECT name, type, sql FROM sqlite_master").fetchall()
     plain = {
         name
         for name, kind, sql in rows
         if kind == "table" and isinstance(sql, str) and re.match(r"CREATE\s+TABLE\b", sql, re.I)
     }
-    missing = {"vertices", "triangles", "lines", RECORD} - plain
+    table = NUMBERS if NUMBERS in plain and "triangles" not in plain else "triangles"
+    missing = {"vertices", table, "lines", RECORD} - plain
     if missing:
         raise Refusal(f"{FILE} is no GeoPackage of a TIN: it has no table '{min(missing)}'.")
     file.set_authorizer(
         lambda action, *_: sqlite3.SQLITE_OK if action in _READ_ONLY else sqlite3.SQLITE_DENY
     )
+    return table
 
 
 def _read_as_written(
-    path: str, file: sqlite3.Connection, digests: str
+    path: str, file: sqlite3.Connection, table: str, digests: str
 ) -> dict[str, AnyArray] | None:
     """Return points, triangles and flags by the pages that hold them, if no other wrote to these.
 
@@ -87,17 +102,19 @@ def _read_as_written(
     tables = {
         name: (sql, root)
         for name, sql, root in file.execute(
-            "SELECT name, sql, rootpage FROM sqlite_master WHERE name IN ('vertices', 'triangles')"
+            "SELECT name, sql, rootpage FROM sqlite_master WHERE name IN ('vertices', ?)", (table,)
         )
     }
-    is_compact = tables["triangles"][0] == declare_layer("triangles", compact=True)
-    if any(sql != declare_layer(name, compact=is_compact) for name, (sql, _) in tables.items()):
+    is_compact = tables[table][0] in (declare_numbers(), FORMER_NUMBERS)
+    is_whole = table == "triangles" and tables[table][0] == declare_layer(table)
+    are_vertices = tables["vertices"][0].startswith(declare_layer("vertices")[:-1])
+    if not (are_vertices and (is_compact or is_whole)):  # attributes may follow
         return None
     with Path(path).open("rb") as content:
         vertices = read_columns(content, tables["vertices"][1], [POINT.itemsize])
         polygons = [] if is_compact else [TRIANGLE.itemsize]
         triangles = read_columns(
-            content, tables["triangles"][1], [*polygons, 0, 0, 0, 0], skip=len(polygons)
+            content, tables[table][1], [*polygons, 0, 0, 0, 0], skip=len(polygons)
         )
     if vertices is None or triangles is None:
         return None
@@ -138,8 +155,8 @@ def _are_points(rows: AnyArray) -> BoolArray:
     return found
 
 
-def _read_triangles(file: sqlite3.Connection, size: int) -> AnyArray:
-    rows = file.execute("SELECT a, b, c, constrained FROM triangles ORDER BY fid")
+def _read_triangles(file: sqlite3.Connection, table: str, size: int) -> AnyArray:
+    rows = file.execute(f"SELECT a, b, c, constrained FROM {table} ORDER BY fid")
     found = (((a, b, c), flags) for a, b, c, flags in islice(rows, size))
     try:
         return np.fromiter(found, _TRIANGLE)

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from ....base.atomic import folder_beside, replacing_path
 from ....base.errors import WriteError
 from ....base.sentences import FILE
-from .schema import LAYERS, NO_CLOCK, RECORD, digest_lines
+from .schema import LAYERS, NO_CLOCK, NUMBERS, RECORD, digest_lines
 from .styles import STYLES, has_foreign_styles, merge_styles
 
 if TYPE_CHECKING:
@@ -24,7 +24,7 @@ MARK = "written by"
 """Item of a layer's metadata whose value is ``tinsmith``."""
 
 _MARKED = f'%<MDI key="{MARK}">tinsmith</MDI>%'
-_OF_TIN = (*LAYERS, RECORD)
+_OF_TIN = (*LAYERS, NUMBERS, RECORD)
 _SYSTEM = re.compile(r"(gpkg|rtree|sqlite)_", re.IGNORECASE)
 """What names of tables that are no content begin with."""
 _SRS_AT = slice(4, 8)
@@ -61,8 +61,9 @@ def adding_layers(path: Path, placing: Placing) -> Iterator[Path]:
             try:
                 with closing(_open(path)) as old, closing(sqlite3.connect(made)) as new:
                     layers = _list_layers(new)
-                    _require_free(old, layers, placing, path)
-                    others = _list_tables(old) - {*layers, STYLES}
+                    replaced = [*layers, *_list_rest_of_tin(old, layers)]
+                    _require_free(old, replaced, placing, path)
+                    others = _list_tables(old) - {*replaced, STYLES}
                     is_all = not placing.append and not others and not has_foreign_styles(old)
                 if is_all:
                     shutil.copyfile(made, beside)
@@ -86,14 +87,24 @@ def _open(path: Path) -> sqlite3.Connection:
 
 
 def _list_layers(file: sqlite3.Connection, schema: str = "main") -> list[str]:
-    """Return the names of the layers; the table of their styles is none."""
-    found = file.execute(f"SELECT table_name FROM {schema}.gpkg_contents")
+    """Return the names of the layers, and of the table that a view is made of; styles are none."""
+    found = file.execute(
+        f"SELECT table_name FROM {schema}.gpkg_contents UNION ALL "
+        f"SELECT name FROM {schema}.sqlite_master WHERE name = '{NUMBERS}'"
+    )
     return [name for (name,) in found if name != STYLES]
 
 
 def _list_tables(file: sqlite3.Connection) -> set[str]:
     found = file.execute("SELECT name FROM sqlite_master WHERE type IN ('table', 'view')")
     return {name for (name,) in found if not _SYSTEM.match(name)}
+
+
+def _list_rest_of_tin(old: sqlite3.Connection, layers: Sequence[str]) -> list[str]:
+    """Return what is there of a TIN beside layers of its names, if these are those of another."""
+    there = _list_tables(old)
+    both = RECORD in there and RECORD in layers
+    return [name for name in _OF_TIN if both and name in there and name not in layers]
 
 
 # ------------------------------------------------------------------- what may be replaced
@@ -158,6 +169,8 @@ def _merge(path: Path, made: Path, beside: Path, placing: Placing) -> None:
         layers = _list_layers(file, "made")
         if RECORD in layers:
             layers = [*(name for name in layers if name != RECORD), RECORD]
+        for rest in _list_rest_of_tin(file, layers):
+            _remove(file, rest)
         for layer in layers:
             there = _ask(
                 file,
@@ -222,14 +235,17 @@ def _add(file: sqlite3.Connection, layer: str, numbers: dict[int, int]) -> None:
         "made.gpkg_geometry_columns WHERE table_name = ?), ''))) AND sql IS NOT NULL",
         (layer, layer, layer),
     ).fetchall()
-    tables = [sql for kind, table, sql in own if kind == "table" and table == layer]
+    ((declared, kind),) = [
+        (sql, kind) for kind, table, sql in own if kind in ("table", "view") and table == layer
+    ]
     indexed = [(table, sql) for kind, table, sql in own if "USING rtree" in sql and kind == "table"]
-    file.execute(tables[0])
+    file.execute(declared)
     geometry = _ask(
         file, "SELECT column_name FROM made.gpkg_geometry_columns WHERE table_name = ?", layer
     )
-    file.execute(f"INSERT INTO main.{name} SELECT * FROM made.{name}")
-    if geometry is not None:
+    if kind == "table":
+        file.execute(f"INSERT INTO main.{name} SELECT * FROM made.{name}")
+    if kind == "table" and geometry is not None:
         _renumber(file, name, _quote(geometry[0]), numbers)
     for table, sql in indexed:
         file.execute(sql)

@@ -16,7 +16,7 @@ from ....base.errors import WriteError
 from ....base.sentences import FILE
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
+    from collections.abc import Iterable, Iterator, Sequence
     from typing import BinaryIO
 
     from ....base.arrays import AnyArray, Int64Array, UInt8Array
@@ -44,11 +44,13 @@ class Column(NamedTuple):
     kinds: AnyArray
     """Type and length of each value (n,): a serial type of SQLite."""
     content: UInt8Array
-    """Bytes of each value (n, width)."""
+    """Bytes of each value (n, width), of a text as many as its type says."""
 
 
 NULL = 0
 _REAL = 7
+_BLOB = 12
+"""The first type of blobs, an even number; a text has an odd one. Types grow by 2 for a byte."""
 _INTEGERS = {1: 1, 2: 2, 3: 3, 4: 4, 8: 6}
 """Serial type by bytes."""
 
@@ -56,11 +58,14 @@ _INTEGERS = {1: 1, 2: 2, 3: 3, 4: 4, 8: 6}
 def make_blobs(rows: AnyArray) -> Column:
     """Return a column of blobs of one length: the elements of a structured array (n,)."""
     size = rows.dtype.itemsize
-    return Column(np.full(len(rows), 12 + 2 * size), rows.view(np.uint8).reshape(-1, size))
+    return Column(np.full(len(rows), _BLOB + 2 * size), rows.view(np.uint8).reshape(-1, size))
 
 
 def make_integers(values: AnyArray, largest: int) -> Column:
-    """Return a column of integers (n,) from 0 to the largest, all of as many bytes."""
+    """Return a column of integers (n,), all of as many bytes.
+
+    The smallest may be ``-largest - 1``.
+    """
     size = next(size for size in _INTEGERS if largest < 1 << (8 * size - 1))
     content = values.astype(">i8").view(np.uint8).reshape(-1, 8)
     return Column(np.full(len(values), _INTEGERS[size]), content[:, 8 - size :])
@@ -70,6 +75,15 @@ def make_reals(values: AnyArray) -> Column:
     """Return a column of real numbers (n,); NaN is NULL."""
     content = values.astype(">f8").view(np.uint8).reshape(-1, 8)
     return Column(np.where(np.isnan(values), NULL, _REAL), content)
+
+
+def make_texts(values: Sequence[str | None]) -> Column:
+    """Return a column of texts; None is NULL."""
+    encoded = [b"" if value is None else value.encode() for value in values]
+    sizes = np.array([len(one) for one in encoded])
+    is_null = np.array([value is None for value in values])
+    content = np.array(encoded, "S").view(np.uint8).reshape(len(values), -1)
+    return Column(np.where(is_null, NULL, _BLOB + 1 + 2 * sizes), content[:, : sizes.max()])
 
 
 # --------------------------------------------------------------------------- cells
@@ -91,15 +105,18 @@ def _make_cells(first: int, columns: list[Column], most: int) -> _Cells:
     head = 2 + _add_up(kinds)  # its own length, and NULL for the number
     if (head > 0x7F).any():
         raise ValueError(f"{len(columns)} columns are more than a header of 127 bytes holds")
-    values = [
-        (column.content, np.where(column.kinds == NULL, 0, column.content.shape[1]))
-        for column in columns
-    ]
+    values = [(column.content, _measure(column)) for column in columns]
     payload = head + _add_up(values)
     if (payload > most).any():
         raise ValueError(f"a row of {payload.max()} bytes is longer than a page holds")
     parts = [*map(pack_varints, (payload, numbers, head, 0 * head)), *kinds, *values]
     return _Cells(numbers, np.cumsum(_add_up(parts)), _join(parts))
+
+
+def _measure(column: Column) -> Int64Array:
+    """Return the bytes of each value."""
+    kinds, width = column.kinds, column.content.shape[1]
+    return np.where(kinds >= _BLOB, (kinds - _BLOB) // 2, np.where(kinds == NULL, 0, width))
 
 
 def _add_up(parts: list[tuple[UInt8Array, Int64Array]]) -> Int64Array:

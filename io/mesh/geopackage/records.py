@@ -126,7 +126,8 @@ class _Packer:
             }
         if isinstance(value, list | tuple):
             plain = list if isinstance(value, list) else tuple
-            return {plain.__name__: [self.pack(one) for one in value]}
+            packed = [one if type(one) is str else self.pack(one) for one in value]
+            return {plain.__name__: packed}
         return {"map": {str(key): self.pack(one) for key, one in dict(value).items()}}
 
 
@@ -191,10 +192,19 @@ def _unpack_column(kind: Any, values: Any, n_rows: int) -> AnyArray:
     return whole
 
 
+class LayerColumn(NamedTuple):
+    """A column of attributes in a layer."""
+
+    declaration: str
+    """Name and type in SQL."""
+    values: AnyArray | list[str | None]
+    """Booleans, whole or real numbers that SQLite holds, or texts."""
+
+
 def describe_layer_columns(
     columns: Mapping[str, AnyArray], taken: Collection[str]
-) -> list[tuple[str, Iterable[Any]]]:
-    """Return for each column its declaration in SQL, and its values as SQLite holds them.
+) -> list[LayerColumn]:
+    """Return each column as a layer has it.
 
     Parameters
     ----------
@@ -210,10 +220,8 @@ def describe_layer_columns(
         kind = {"b": "BOOLEAN", "i": "INTEGER", "u": "INTEGER", "f": "REAL"}.get(values.dtype.kind)
         if values.dtype.kind == "u" and (values >= _LARGEST).any():
             kind = None
-        plain = values.tolist()
-        found.append(
-            (f"{quoted} {kind}", plain) if kind else (f"{quoted} TEXT", map(_as_text, plain))
-        )
+        texts = [] if kind else [_as_text(value) for value in values.tolist()]
+        found.append(LayerColumn(f"{quoted} {kind or 'TEXT'}", values if kind else texts))
     return found
 
 

@@ -26,14 +26,16 @@ RECORD = "tinsmith_tin"
 NO_CLOCK = "1970-01-01T00:00:00.000Z"
 """Time of the last change: the same TIN gives the same bytes."""
 
-_COMPACT_TRIANGLES = (
+NUMBERS = "tinsmith_triangles"
+"""The table of the vertices of each triangle, where the layer of triangles is a view."""
+
+_CORNERS = (
     "a INTEGER NOT NULL, b INTEGER NOT NULL, c INTEGER NOT NULL, constrained INTEGER NOT NULL"
 )
-"""Columns of triangles as a table without polygons."""
 
 LAYERS = {
     "vertices": ("POINT", "vertex INTEGER NOT NULL"),
-    "triangles": ("POLYGON", f"{_COMPACT_TRIANGLES}, slope REAL, aspect REAL"),
+    "triangles": ("POLYGON", f"{_CORNERS}, slope REAL, aspect REAL"),
     "lines": ("LINESTRING", "kind TEXT NOT NULL, name TEXT NOT NULL, source INTEGER NOT NULL"),
     "boundary": ("LINESTRING", "ring INTEGER NOT NULL"),
     "water": ("POLYGON", "name TEXT NOT NULL, elevation REAL NOT NULL"),
@@ -63,14 +65,44 @@ TABLES = (
 )
 
 
-def declare_layer(name: str, *, compact: bool) -> str:
+def declare_layer(name: str) -> str:
     """Return the statement that makes the table of a layer."""
     geometry, columns = LAYERS[name]
-    if compact and name == "triangles":
-        return f"CREATE TABLE {name} (fid INTEGER PRIMARY KEY NOT NULL, {_COMPACT_TRIANGLES})"
     return (
         f"CREATE TABLE {name} (fid INTEGER PRIMARY KEY NOT NULL, geom {geometry} NOT NULL, "
         f"{columns})"
+    )
+
+
+def declare_numbers() -> str:
+    """Return the statement that makes the table of the vertices of each triangle.
+
+    No row has a value in the last column, from which the view has the type of its polygons. It is
+    not among the contents, where a table with such a column would have to be a layer.
+    """
+    return f"CREATE TABLE {NUMBERS} (fid INTEGER PRIMARY KEY NOT NULL, {_CORNERS}, geom POLYGON)"
+
+
+FORMER_NUMBERS = f"CREATE TABLE triangles (fid INTEGER PRIMARY KEY NOT NULL, {_CORNERS})"
+"""The table of a file without a view."""
+
+
+def declare_view() -> str:
+    """Return the statement that makes triangles a view: polygons put together from the vertices.
+
+    Of the point of a vertex the first 8 bytes are the header, which is that of a polygon too, and
+    those from the 14th on its coordinates. Columns have the types of the first query, of no rows.
+    """
+    header, ring = "substr(p.geom, 1, 8)", np.array([(1, _POLYGON_Z, 1, 4)], _RING).tobytes().hex()
+    corners = " || ".join(f"substr({corner}.geom, 14)" for corner in "pqrp")
+    joined = " ".join(
+        f"CROSS JOIN vertices {corner} ON {corner}.fid = t.{column} + 1"
+        for corner, column in zip("pqr", "abc", strict=True)
+    )
+    return (
+        f"CREATE VIEW triangles AS SELECT fid, geom, a, b, c, constrained FROM {NUMBERS} WHERE 0 "
+        f"UNION ALL SELECT t.fid, CAST({header} || x'{ring}' || {corners} AS BLOB), t.a, t.b, t.c, "
+        f"t.constrained FROM {NUMBERS} t {joined}"
     )
 
 
@@ -141,6 +173,7 @@ TRIANGLE = np.dtype(
 )
 """A polygon of three sides, likewise."""
 
+_RING = np.dtype([*_KIND, ("rings", "<u4"), ("count", "<u4")])
 _POINT_Z, _LINE_Z, _POLYGON_Z = 1001, 1002, 1003
 
 

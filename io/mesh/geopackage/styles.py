@@ -11,11 +11,11 @@ from typing import TYPE_CHECKING
 from xml.sax.saxutils import quoteattr
 
 from ....terrain.drawing import interpolate_tints
-from .schema import NO_CLOCK
+from .schema import LAYERS, NO_CLOCK
 
 if TYPE_CHECKING:
     import sqlite3
-    from collections.abc import Callable, Iterable, Sequence
+    from collections.abc import Callable, Sequence
 
     from ....tin import TIN
 
@@ -58,8 +58,8 @@ _KINDS = {
 _Color = tuple[int, int, int]
 
 
-def write_styles(file: sqlite3.Connection, tin: TIN, layers: Iterable[str]) -> None:
-    """Write the table, with a row for each of these layers."""
+def write_styles(file: sqlite3.Connection, tin: TIN) -> None:
+    """Write the table, with a row for each layer."""
     made: dict[str, Callable[[TIN], str]] = {
         "triangles": _style_triangles,
         "lines": _style_lines,
@@ -69,7 +69,7 @@ def write_styles(file: sqlite3.Connection, tin: TIN, layers: Iterable[str]) -> N
     }
     file.execute(_TABLE)
     file.execute(_CONTENT)
-    for name in layers:
+    for name in LAYERS:
         row = (name, made[name](tin), f"Made of the TIN by {_OWNER}.", _OWNER, NO_CLOCK)
         file.execute(
             f"INSERT INTO {STYLES} ({', '.join(_COLUMNS)}) "

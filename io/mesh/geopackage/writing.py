@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import sqlite3
 from contextlib import closing
-from itertools import islice
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -16,16 +15,19 @@ from ....base.sentences import FILE
 from ....terrain.relief import aspect, slope
 from ..common import format_unit, require_tin
 from .existing_layers import Placing, adding_layers
-from .pages import Column, fill_table, make_blobs, make_integers, make_reals
+from .pages import Column, fill_table, make_blobs, make_integers, make_reals, make_texts
 from .records import describe_layer_columns, pack_tin
 from .schema import (
     APPLICATION_ID,
     LAYERS,
     NO_CLOCK,
+    NUMBERS,
     RECORD,
     TABLES,
     USER_VERSION,
     declare_layer,
+    declare_numbers,
+    declare_view,
     describe_crs,
     digest_arrays,
     digest_lines,
@@ -39,11 +41,16 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
     from pathlib import Path
 
+    from ....base.arrays import AnyArray
     from ....base.progress import Tell
     from ....tin import TIN
+    from .records import LayerColumn
 
 _CHUNK = 1 << 16
 """Triangles in memory at a time, as geometries."""
+
+_MOST_COLUMNS, _LONGEST_TEXTS = 40, 1024
+"""Attributes, and characters of their texts, of vertices whose rows are made as arrays."""
 
 _PAGE = 1 << 15
 """Bytes of a page: a fifth faster than SQLite's own 4096, and all names of tables in the first."""
@@ -64,8 +71,9 @@ def write(
     overwrite : bool
         Replace layers of the names below that another program wrote or changed.
     compact : bool
-        Write triangles as a table of vertex numbers, without polygons, slope and aspect: a quarter
-        of the size, and all of the TIN; other programs show its vertices and lines.
+        Write triangles as a table of vertex numbers, and a view that makes polygons of it when a
+        program asks for them, without slope and aspect: a quarter of the size, and all of the TIN.
+        GDAL and QGIS show all layers; 2 to 5 us a triangle each time that they are read.
 
     Raises
     ------
@@ -86,23 +94,26 @@ def write(
     tin = require_tin(surface, format_name="a GeoPackage of a TIN")
     tell = progress or (lambda _: None)
     is_compact = as_flag("compact", compact)
+    attributes = describe_layer_columns(tin.attributes, ("fid", "geom", "vertex"))
     with adding_layers(path, Placing(overwrite=as_flag("overwrite", overwrite))) as beside:
         try:
             with closing(sqlite3.connect(beside, isolation_level=None)) as file:
-                srs = _write_content(file, tin, compact=is_compact)
+                srs = _write_content(file, tin, attributes, compact=is_compact)
                 roots = dict(file.execute("SELECT name, rootpage FROM sqlite_schema"))
             with beside.open("r+b") as content:
-                if not tin.attributes:
-                    fill_table(content, roots["vertices"], _list_vertices(tin, srs))
+                if _are_short(attributes):
+                    fill_table(content, roots["vertices"], _list_vertices(tin, srs, attributes))
                 tell(0.2)
                 rows = _list_numbers(tin) if is_compact else _list_triangles(tin, srs, tell)
-                fill_table(content, roots["triangles"], rows)
+                fill_table(content, roots[NUMBERS if is_compact else "triangles"], rows)
                 tell(1.0)
         except sqlite3.Error as error:
             raise WriteError(f"Cannot write {FILE}: {error}.") from error
 
 
-def _write_content(file: sqlite3.Connection, tin: TIN, *, compact: bool) -> int:
+def _write_content(
+    file: sqlite3.Connection, tin: TIN, attributes: list[LayerColumn], *, compact: bool
+) -> int:
     """Write all but the rows of large layers, and return the number of the CRS."""
     file.execute("PRAGMA journal_mode = OFF")  # the file takes its place when it is complete
     file.execute("PRAGMA synchronous = OFF")
@@ -110,35 +121,50 @@ def _write_content(file: sqlite3.Connection, tin: TIN, *, compact: bool) -> int:
     file.execute(f"PRAGMA application_id = {APPLICATION_ID}")
     file.execute(f"PRAGMA user_version = {USER_VERSION}")
     file.execute("BEGIN")
-    for table in (*TABLES, *(declare_layer(name, compact=compact) for name in LAYERS)):
-        file.execute(table)
-    srs = _write_contents(file, tin, compact=compact)
+    layers = {name: declare_layer(name) for name in LAYERS}
+    if compact:
+        layers |= {"triangles": declare_view(), NUMBERS: declare_numbers()}
+    for declaration in (*TABLES, *layers.values()):
+        file.execute(declaration)
+    srs = _write_contents(file, tin)
     _write_lines(file, tin, srs)
     _write_record(file, tin)
-    write_styles(file, tin, [name for name in LAYERS if not (compact and name == "triangles")])
-    if tin.attributes:
-        _write_vertices_with_attributes(file, tin, srs)
+    write_styles(file, tin)
+    for column in attributes:
+        file.execute(f"ALTER TABLE vertices ADD COLUMN {column.declaration}")
+    if not _are_short(attributes):
+        _insert_vertices(file, tin, srs, attributes)
     file.execute("COMMIT")
     return srs
 
 
-def _write_vertices_with_attributes(file: sqlite3.Connection, tin: TIN, srs: int) -> None:
-    columns = describe_layer_columns(tin.attributes, ("fid", "geom", "vertex"))
-    for declaration, _ in columns:
-        file.execute(f"ALTER TABLE vertices ADD COLUMN {declaration}")
-    values = [iter(column) for _, column in columns]
-    marks = ", ".join("?" * (3 + len(columns)))
+def _insert_vertices(
+    file: sqlite3.Connection, tin: TIN, srs: int, attributes: list[LayerColumn]
+) -> None:
+    """Write vertices row by row, whose rows may be longer than a page."""
+    marks = ", ".join("?" * (3 + len(attributes)))
     for part in _divide(len(tin.points)):
         numbers = range(part.start, part.stop)
         blobs = map(bytes, make_points(tin.points[part], srs))
-        parts = [islice(column, len(numbers)) for column in values]
+        parts = [column.values[part] for column in attributes]
+        plain = [one.tolist() if isinstance(one, np.ndarray) else one for one in parts]
         file.executemany(
             f"INSERT INTO vertices VALUES ({marks})",
-            zip((number + 1 for number in numbers), blobs, numbers, *parts, strict=True),
+            zip((number + 1 for number in numbers), blobs, numbers, *plain, strict=True),
         )
 
 
-def _write_contents(file: sqlite3.Connection, tin: TIN, *, compact: bool) -> int:
+def _are_short(attributes: list[LayerColumn]) -> bool:
+    """Whether rows are made as arrays, which have the longest text in every row."""
+    longest = sum(
+        max(len(text or "") for text in column.values)
+        for column in attributes
+        if isinstance(column.values, list)
+    )
+    return len(attributes) <= _MOST_COLUMNS and longest <= _LONGEST_TEXTS
+
+
+def _write_contents(file: sqlite3.Connection, tin: TIN) -> int:
     """Write the tables that every GeoPackage has, and return the number of the CRS."""
     rows = describe_crs(tin.crs)
     srs = rows[-1][1]
@@ -147,9 +173,6 @@ def _write_contents(file: sqlite3.Connection, tin: TIN, *, compact: bool) -> int
     unit = format_unit(tin) or "an unknown unit"
     box = tin.bounds
     for name, (geometry, _) in LAYERS.items():
-        if compact and name == "triangles":
-            _register_table(file, name, "Numbers of the vertices of each triangle.")
-            continue
         row = (name, "features", name, f"Elevations in {unit}.", NO_CLOCK)
         file.execute(
             "INSERT INTO gpkg_contents VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?)",
@@ -159,20 +182,16 @@ def _write_contents(file: sqlite3.Connection, tin: TIN, *, compact: bool) -> int
             "INSERT INTO gpkg_geometry_columns VALUES (?, 'geom', ?, ?, 1, 0)",
             (name, geometry, srs),
         )
-    _register_table(file, RECORD, "What tinsmith knows of the TIN beside the layers.")
+    file.execute(
+        "INSERT INTO gpkg_contents (table_name, data_type, identifier, description, last_change) "
+        "VALUES (?, 'attributes', ?, 'What tinsmith knows of the TIN beside the layers.', ?)",
+        (RECORD, RECORD, NO_CLOCK),
+    )
     file.execute(
         "INSERT INTO gpkg_extensions VALUES ('gpkg_spatial_ref_sys', 'definition_12_063', "
         "'gpkg_crs_wkt', 'http://www.geopackage.org/spec/#extension_crs_wkt', 'read-write')"
     )
     return srs
-
-
-def _register_table(file: sqlite3.Connection, name: str, description: str) -> None:
-    file.execute(
-        "INSERT INTO gpkg_contents (table_name, data_type, identifier, description, last_change) "
-        "VALUES (?, 'attributes', ?, ?, ?)",
-        (name, name, description, NO_CLOCK),
-    )
 
 
 def _write_lines(file: sqlite3.Connection, tin: TIN, srs: int) -> None:
@@ -227,13 +246,31 @@ def _divide(count: int) -> Iterator[slice]:
     return (slice(start, min(start + _CHUNK, count)) for start in range(0, count, _CHUNK))
 
 
-def _list_vertices(tin: TIN, srs: int) -> Iterator[list[Column]]:
+def _list_vertices(tin: TIN, srs: int, attributes: list[LayerColumn]) -> Iterator[list[Column]]:
+    largest = [_find_largest(column.values) for column in attributes]
     for part in _divide(len(tin.points)):
         numbers = np.arange(part.start, part.stop)
         yield [
             make_blobs(make_points(tin.points[part], srs)),
             make_integers(numbers, len(tin.points)),
+            *(
+                _make_column(column.values[part], most)
+                for column, most in zip(attributes, largest, strict=True)
+            ),
         ]
+
+
+def _find_largest(values: AnyArray | list[str | None]) -> int:
+    """Return the largest of whole numbers, for which a negative one counts as its complement."""
+    if isinstance(values, list) or values.dtype.kind == "f":
+        return 0
+    return max(int(values.max()), ~int(values.min()))
+
+
+def _make_column(values: AnyArray | list[str | None], largest: int) -> Column:
+    if isinstance(values, list):
+        return make_texts(values)
+    return make_reals(values) if values.dtype.kind == "f" else make_integers(values, largest)
 
 
 def _list_numbers(tin: TIN) -> Iterator[list[Column]]:

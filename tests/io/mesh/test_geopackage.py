@@ -13,6 +13,7 @@ from support.each_value import list_seeds
 from support.same_tins import find_differences
 
 import tinsmith as ts
+from tinsmith.io.mesh.geopackage import writing
 from tinsmith.io.mesh.geopackage.schema import digest_arrays
 
 CRSES = [
@@ -124,6 +125,17 @@ def test_copies_of_what_was_read_are_edited_alike(path):
     assert len(found.edits) == 4
 
 
+NUMBERS = "SELECT fid, a, b, c, constrained FROM triangles ORDER BY fid"
+
+
+def list_kinds(path):
+    with closing(sqlite3.connect(path)) as file:
+        assert file.execute("PRAGMA integrity_check").fetchall() == [("ok",)]
+        assert file.execute("PRAGMA foreign_key_check").fetchall() == []
+        kinds = dict(file.execute("SELECT name, type FROM sqlite_master WHERE type <> 'index'"))
+        return kinds | dict(file.execute("SELECT table_name, data_type FROM gpkg_contents"))
+
+
 @pytest.mark.parametrize("is_there", [False, True])
 def test_a_compact_file_holds_all_without_polygons(path, tmp_path, is_there):
     tin = make_tin(crs=32616)
@@ -137,15 +149,90 @@ def test_a_compact_file_holds_all_without_polygons(path, tmp_path, is_there):
     found.undo(2)
     tin.undo(2)
     assert find_differences(tin, found) == []
-    with closing(sqlite3.connect(path)) as file:
-        assert file.execute("PRAGMA integrity_check").fetchall() == [("ok",)]
-        kinds = dict(file.execute("SELECT table_name, data_type FROM gpkg_contents"))
-        numbers = file.execute("SELECT * FROM triangles ORDER BY fid").fetchall()
-    assert kinds["triangles"] == "attributes"
+    kinds = list_kinds(path)
+    assert (kinds["triangles"], kinds["tinsmith_triangles"]) == ("features", "table")
     assert ("contours" in kinds) == is_there
-    with closing(sqlite3.connect(whole)) as file:
-        query = "SELECT fid, a, b, c, constrained FROM triangles ORDER BY fid"
-        assert file.execute(query).fetchall() == numbers
+    with closing(sqlite3.connect(path)) as file, closing(sqlite3.connect(whole)) as other:
+        assert file.execute(NUMBERS).fetchall() == other.execute(NUMBERS).fetchall()
+
+
+def test_triangles_of_a_compact_file_are_the_polygons_of_a_whole_one(path, tmp_path):
+    """The view puts the same coordinates together; only the box that may precede them lacks."""
+    tin = make_tin(crs=32616)
+    ts.write(ts.contours(make_tin(2), interval=20.0), path)  # the CRS of the TIN gets a number
+    ts.write(tin, path, compact=True)
+    whole = ts.write(tin, tmp_path / "whole.gpkg")
+    found = []
+    for name in (path, whole):
+        with closing(sqlite3.connect(name)) as file:
+            query = "SELECT typeof(geom), geom FROM triangles ORDER BY fid"
+            found.append([shape for kind, shape in file.execute(query) if kind == "blob"])
+    assert len(found[0]) == len(found[1]) == len(tin.triangles)
+    headers = {shape[:8] for shape in found[0]}
+    assert headers == {b"GP\0\1" + (32616).to_bytes(4, "little")}
+    assert [shape[8:] for shape in found[0]] == [shape[40:] for shape in found[1]]
+
+
+@pytest.mark.parametrize("layer", ["triangles", "vertices"])
+def test_gdal_reads_the_layers_of_a_compact_file(path, tmp_path, layer):
+    import pyogrio
+
+    tin = make_tin(crs=32616)
+    ts.write(tin, path, compact=True)
+    whole = ts.write(tin, tmp_path / "whole.gpkg")
+    kinds = dict(pyogrio.list_layers(path))
+    assert kinds["triangles"] == "Polygon Z"
+    one, two = (pyogrio.raw.read(name, layer=layer) for name in (path, whole))
+    assert one[0]["crs"] == two[0]["crs"] == "EPSG:32616"
+    assert one[2].tolist() == two[2].tolist()
+    box = (*tin.points[:, :2].min(axis=0), *tin.points[:, :2].mean(axis=0))
+    few = [pyogrio.raw.read(name, layer=layer, bbox=box)[2] for name in (path, whole)]
+    assert few[0].tolist() == few[1].tolist()
+    assert 0 < len(few[0]) < len(one[2])
+
+
+def test_polygons_take_the_place_of_a_view_and_a_view_theirs(path):
+    tin = make_tin(crs=32616)
+    ts.write(ts.contours(tin, interval=20.0), path)
+    for is_compact in (True, False, False, True):
+        ts.write(tin, path, compact=is_compact)
+        kinds = list_kinds(path)
+        assert ("tinsmith_triangles" in kinds) == is_compact
+        assert {"contours", "triangles", "vertices", "tinsmith_tin"} <= set(kinds)
+        assert find_differences(tin, ts.read(path)) == []
+    ts.write(tin, path.with_name("alone.gpkg"), compact=True)
+    ts.write(tin, path.with_name("alone.gpkg"))
+    assert "tinsmith_triangles" not in list_kinds(path.with_name("alone.gpkg"))
+
+
+def test_a_compact_file_of_the_first_kind_is_read(path):
+    """It had the numbers as a table ``triangles``, and no view."""
+    tin = make_tin(crs=32616)
+    edit(tin)
+    ts.write(tin, path, compact=True)
+    with closing(sqlite3.connect(path)) as file, file:
+        file.execute("DROP VIEW triangles")
+        file.execute("PRAGMA writable_schema = ON")
+        file.execute(
+            "UPDATE sqlite_master SET name = 'triangles', tbl_name = 'triangles', "
+            "sql = replace(replace(sql, 'tinsmith_triangles', 'triangles'), ', geom POLYGON', '') "
+            "WHERE name = 'tinsmith_triangles'"
+        )
+    assert find_differences(tin, ts.read(path)) == []
+    ts.write(tin, path, compact=True, overwrite=True)
+    assert find_differences(tin, ts.read(path)) == []
+    assert list_kinds(path)["triangles"] == "features"
+
+
+def test_a_view_of_numbers_is_refused(path):
+    """Only tables are read; what a view of another file calls is never run."""
+    ts.write(make_tin(), path, compact=True)
+    with closing(sqlite3.connect(path)) as file, file:
+        file.execute("DROP VIEW triangles")
+        file.execute("ALTER TABLE tinsmith_triangles RENAME TO other")
+        file.execute("CREATE VIEW tinsmith_triangles AS SELECT * FROM other")
+    with pytest.raises(ts.ReadError, match="no table 'triangles'"):
+        ts.read(path)
 
 
 def test_the_same_tin_gives_the_same_bytes(tmp_path):
@@ -410,3 +497,53 @@ def test_attributes_of_every_type_come_back(tmp_path):
     assert frame["code"].tolist() == tin.attributes["code"].tolist()
     assert {"Vertex_2", 'we "ird; DROP'} <= set(frame.columns)
     assert frame["vertex"].tolist() == list(range(len(tin.points)))
+
+
+def make_attributes(count, seed):
+    """Return columns of all types, with gaps, in which hard values come early."""
+    rng = np.random.default_rng(seed)
+    reals = rng.normal(size=count) * 10.0 ** rng.integers(-300, 300, count)
+    reals[:4] = [np.nan, -0.0, np.inf, 3.0]
+    words = ["", "a", "Bö\0schung", "\U0001f30d", "x" * int(rng.integers(50, 70)), None, "12"]
+    whole = {"big": 62, "small": 6, "medium": 20}
+    texts = np.empty(count, object)
+    texts[:] = [words[k] for k in rng.integers(0, len(words), count)]
+    few = np.array(["gnd", "tree"])[rng.integers(0, 2, count)]
+    integers = {name: rng.integers(-(2**n), 2**n, count) for name, n in whole.items()}
+    kinds = {"flag": rng.random(count) < 0.5, "half": reals[::-1].astype("f4")}
+    return {"texts": texts, "reals": reals, "few": few, **integers, **kinds}
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_attributes_laid_out_as_pages_are_those_that_sqlite_writes(tmp_path, monkeypatch, seed):
+    rng = np.random.default_rng(seed)
+    count = int(rng.integers(4, 900))
+    with np.errstate(over="ignore"):
+        attributes = make_attributes(count, seed)
+    survey = ts.Survey(points=rng.random((count, 3)) * 100, attributes=attributes)
+    tin = ts.triangulate(survey)
+    paths = [ts.write(tin, tmp_path / "pages.gpkg")]
+    monkeypatch.setattr(writing, "_MOST_COLUMNS", -1)
+    paths.append(ts.write(tin, tmp_path / "rows.gpkg"))
+    found = []
+    for path in paths:
+        with closing(sqlite3.connect(path)) as file:
+            assert file.execute("PRAGMA integrity_check").fetchall() == [("ok",)]
+            kinds = ", ".join(f"typeof({name}), {name}" for name in ("fid", "vertex", *attributes))
+            found.append(file.execute(f"SELECT {kinds}, geom FROM vertices").fetchall())
+    assert found[0] == found[1]
+    assert find_differences(tin, ts.read(paths[0])) == []
+
+
+@pytest.mark.parametrize("attribute", ["x" * 40_000, "long"])
+def test_rows_that_no_page_holds_are_written_by_sqlite(path, attribute):
+    columns = {"note": np.array([attribute, "b", "c", "d"], object)}
+    if attribute == "long":
+        columns = {f"c{k}": np.arange(4) for k in range(200)}
+    points = [[0, 0, 1], [4, 0, 2], [4, 4, 9], [0, 5, 4.0]]
+    tin = ts.triangulate(ts.Survey(points=points, attributes=columns))
+    assert find_differences(tin, ts.read(ts.write(tin, path))) == []
+    with closing(sqlite3.connect(path)) as file:
+        assert file.execute("PRAGMA integrity_check").fetchall() == [("ok",)]
+        found = file.execute("SELECT * FROM vertices ORDER BY fid").fetchall()
+    assert [row[3] for row in found] == tin.attributes[next(iter(columns))].tolist()

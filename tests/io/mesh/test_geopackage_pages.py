@@ -17,6 +17,7 @@ from tinsmith.io.mesh.geopackage.pages import (
     make_integers,
     make_reals,
 )
+from tinsmith.io.mesh.geopackage.schema import NUMBERS
 
 COUNTS = [1, 2, 3, 127, 128, 129, 600, 16_384, 40_000]
 LARGEST = [100, 127, 128, 32_767, 32_768, 2**23 - 1, 2**23, 2**31 - 1, 2**31, 2**50]
@@ -256,21 +257,22 @@ def test_a_tin_is_read_from_pages_as_sqlite_reads_it(tmp_path, is_compact):
     points = np.random.default_rng(3).random((3000, 3)) * 1000
     tin = ts.triangulate(points, breaklines=[[[1, 1, 5], [999, 999, 5]]])
     path = ts.write(tin, tmp_path / "a.gpkg", compact=is_compact)
+    table = NUMBERS if is_compact else "triangles"
     with closing(sqlite3.connect(path)) as file:
         query = "SELECT data FROM tinsmith_tin WHERE name = 'digests'"
         digests = file.execute(query).fetchone()[0].decode()
-        found = child._read_as_written(str(path), file, digests)
-        rows = child._read_triangles(file, path.stat().st_size)
+        found = child._read_as_written(str(path), file, table, digests)
+        rows = child._read_triangles(file, table, path.stat().st_size)
         assert found is not None
         assert (found["points"] == child._read_points(file)).all()
         assert (found["triangles"] == rows["corners"]).all()
         assert (found["flags"] == rows["flags"]).all()
         other = digests.replace('"mesh": "', '"mesh": "0')
-        assert child._read_as_written(str(path), file, other) is None
-        assert child._read_as_written(str(path), file, "[") is None
-    change(path, "UPDATE triangles SET a = b, b = a WHERE fid = 7")
+        assert child._read_as_written(str(path), file, table, other) is None
+        assert child._read_as_written(str(path), file, table, "[") is None
+    change(path, f"UPDATE {table} SET a = b, b = a WHERE fid = 7")
     with closing(sqlite3.connect(path)) as file:
-        assert child._read_as_written(str(path), file, digests) is None
+        assert child._read_as_written(str(path), file, table, digests) is None
     change(path, "ALTER TABLE vertices ADD COLUMN more")
     with closing(sqlite3.connect(path)) as file:
-        assert child._read_as_written(str(path), file, digests) is None
+        assert child._read_as_written(str(path), file, table, digests) is None
