@@ -9,6 +9,7 @@ from __future__ import annotations
 import re
 import warnings
 from dataclasses import dataclass, field
+from itertools import groupby
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -124,10 +125,13 @@ class TextRows:
     def sort_by_keyword(self) -> dict[str, TextRows]:
         """Return the rows that begin with each word."""
         sorted_rows: dict[str, TextRows] = {}
-        for text, line in zip(self.texts, self.lines, strict=True):
-            part = sorted_rows.setdefault(text.split(None, 1)[0], TextRows())
-            part.texts.append(text)
-            part.lines.append(line)
+        start = 0
+        for word, run in groupby([text.split(None, 1)[0] for text in self.texts]):
+            part = sorted_rows.setdefault(word, TextRows())
+            end = start + sum(1 for _ in run)
+            part.texts.extend(self.texts[start:end])
+            part.lines.extend(self.lines[start:end])
+            start = end
         return sorted_rows
 
 

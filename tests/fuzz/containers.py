@@ -64,14 +64,20 @@ def examine(case: Case) -> str:
 def _make_ours(rng: np.random.Generator, epsg: int) -> tuple[ts.TIN, ts.Features]:
     scale = 0.001 if epsg == 4326 else 1.0
     points = np.column_stack([scale * rng.integers(0, 30, (30, 2)), rng.random(30)])
-    tin = ts.triangulate(points, crs=epsg)
+    words = np.array(["EP", "kerb", "", "Böschung " * 9])[rng.integers(0, 4, 30)]
+    attributes = {"code": words, "number": rng.integers(-9, 300, 30)} if rng.random() < 0.5 else {}
+    survey = ts.Survey(points=points, attributes=attributes, crs=epsg)
+    tin = ts.triangulate(survey)
     return tin, ts.contours(tin, 0.2)
 
 
 def _write_ours(path: Path, word: str, name: str, tin: ts.TIN, features: ts.Features) -> None:
     if word == "tin":
-        ts.write(tin, path)
+        ts.write(tin, path, compact=bool(len(tin.points) % 2))
         assert ts.read(path) == tin
+        shapes = geopandas.read_file(path, layer="triangles").geometry
+        rings = shapely.get_coordinates(shapes, include_z=True).reshape(-1, 4, 3)
+        assert (rings[:, :3] == tin.points[tin.triangles]).all(), "the polygons are others"
     elif word == "fails":
         with patch.object(
             existing_layers, "_register", side_effect=sqlite3.OperationalError("full")

@@ -296,13 +296,13 @@ def _whole_tin(folder: Path) -> list[tuple[str, bytes]]:
         "day": np.zeros(count, "M8[D]"),
     }
     named = _tin().replace(row_attributes=columns)
-    tins = (("ours.gpkg", _tin()), ("edited.gpkg", edited), ("named.gpkg", named))
-    for name, tin in tins:
-        path = ts.write(tin, folder / name)
+    tins = {"ours": _tin(), "edited": edited, "named": named, "compact": named}
+    for name, tin in tins.items():
+        path = ts.write(tin, folder / f"{name}.gpkg", compact=name == "compact")
         with closing(sqlite3.connect(path, isolation_level=None)) as file:
             file.execute("PRAGMA page_size = 512")
             file.execute("VACUUM")
-        files.append((name, path.read_bytes()))
+        files.append((path.name, path.read_bytes()))
     return files
 
 

@@ -22,10 +22,13 @@ def require_distinct(numbers: Int64Array, rows: TextRows) -> None:
 
 def find_nodes(named: Int64Array, numbers: Int64Array, rows: TextRows) -> Int64Array:
     """Return the positions of nodes that are called by number, in rows of a file."""
-    order = np.argsort(numbers)
-    at = np.searchsorted(numbers, named, sorter=order)
-    found = order[np.minimum(at, len(order) - 1)] if len(order) else np.zeros_like(at)
-    wrong = (numbers[found] != named) if len(order) else np.ones(named.shape, np.bool_)
+    if len(numbers) and (np.diff(numbers) == 1).all():  # as most programs number them
+        found = np.clip(named, numbers[0], numbers[-1]) - numbers[0]
+    else:
+        order = np.argsort(numbers)
+        at = np.searchsorted(numbers, named, sorter=order)
+        found = order[np.minimum(at, len(order) - 1)] if len(order) else np.zeros_like(at)
+    wrong = (numbers[found] != named) if len(numbers) else np.ones(named.shape, np.bool_)
     if wrong.any():
         row = int(np.argmax(wrong.reshape(len(named), -1).any(axis=1)))
         first = int(named[row].ravel()[np.argmax(wrong[row])])
