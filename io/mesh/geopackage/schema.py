@@ -91,18 +91,20 @@ def declare_view() -> str:
     """Return the statement that makes triangles a view: polygons put together from the vertices.
 
     Of the point of a vertex the first 8 bytes are the header, which is that of a polygon too, and
-    those from the 14th on its coordinates. Columns have the types of the first query, of no rows.
+    those from the 14th on its coordinates. Polygons have the type of the query behind theirs, which
+    finds no row: an expression alone has none.
     """
     header, ring = "substr(p.geom, 1, 8)", np.array([(1, _POLYGON_Z, 1, 4)], _RING).tobytes().hex()
     corners = " || ".join(f"substr({corner}.geom, 14)" for corner in "pqrp")
+    polygon = f"CAST({header} || x'{ring}' || {corners} AS BLOB)"
     joined = " ".join(
         f"CROSS JOIN vertices {corner} ON {corner}.fid = t.{column} + 1"
         for corner, column in zip("pqr", "abc", strict=True)
     )
     return (
-        f"CREATE VIEW triangles AS SELECT fid, geom, a, b, c, constrained FROM {NUMBERS} WHERE 0 "
-        f"UNION ALL SELECT t.fid, CAST({header} || x'{ring}' || {corners} AS BLOB), t.a, t.b, t.c, "
-        f"t.constrained FROM {NUMBERS} t {joined}"
+        f"CREATE VIEW triangles AS SELECT t.fid AS fid, (SELECT {polygon} UNION ALL SELECT geom "
+        f"FROM {NUMBERS} WHERE 0) AS geom, t.a AS a, t.b AS b, t.c AS c, t.constrained AS "
+        f"constrained FROM {NUMBERS} t {joined}"
     )
 
 

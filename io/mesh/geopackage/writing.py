@@ -73,7 +73,7 @@ def write(
     compact : bool
         Write triangles as a table of vertex numbers, and a view that makes polygons of it when a
         program asks for them, without slope and aspect: a quarter of the size, and all of the TIN.
-        GDAL and QGIS show all layers; 2 to 5 us a triangle each time that they are read.
+        GDAL and QGIS show all layers; 1 to 5 us a triangle each time that they are read.
 
     Raises
     ------
