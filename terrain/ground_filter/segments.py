@@ -60,9 +60,10 @@ def link(points: Float64Array, ring: Float64Array, parameters: Parameters) -> Li
     Points are (n, 3), at different places, in metres; those of the ring around them, (k, 3) and not
     all in line, are linked with none.
     """
-    edges = triangulate(np.concatenate([points, ring])).edges.astype(np.int64)
-    one, other = edges[(edges < len(points)).all(axis=1)].T
-    east, north, rise = (points[other] - points[one]).T
+    one, other = triangulate(np.concatenate([points, ring])).edges.T
+    is_inner = np.maximum(one, other) < len(points)
+    one, other = (end[is_inner].astype(np.int64) for end in (one, other))
+    east, north, rise = (axis[other] - axis[one] for axis in np.ascontiguousarray(points.T))
     length = np.hypot(east, north)
     is_even = np.abs(rise) <= parameters.tolerance / 2 + parameters.terrain_slope * length
     is_near = length <= parameters.edge_length

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from tinsmith.terrain.ground_filter import morphology
+from tinsmith.terrain.ground_filter.frame import Frame, lay_cells
 from tinsmith.terrain.ground_filter.morphology import (
     find_covered,
     least_around,
@@ -106,3 +107,18 @@ def test_windows_grow_to_the_largest():
         assert windows[0] == 1
         assert windows[-1] == largest
         assert sorted(set(windows)) == windows
+
+
+@pytest.mark.parametrize("steps", [1, 3, 1000])
+@pytest.mark.parametrize("count", [1, 2, 500])
+def test_points_of_cells_lie_from_the_lowest_up_then_by_coordinates(count, steps):
+    """Also those of one elevation, those of one place, and zeros of both signs."""
+    rng = np.random.default_rng(count + steps)
+    points = rng.integers(0, steps + 1, (count, 3)) * (8 / steps)
+    points[rng.random(count) < 0.1, 2] = -0.0
+    frame = Frame((8.0, 8.0), 2.0, (0, 0), (5, 5))
+    cells = lay_cells(points, frame)
+    column, row = np.floor(points[:, :2] / 2).astype(int).T
+    assert cells.number.tolist() == (5 * column + row).tolist()
+    x, y, z = points.T
+    assert cells.order.tolist() == np.lexsort((y, x, z, cells.number)).tolist()

@@ -8,6 +8,7 @@ from support.leave_one_out import interpolate_without, rounding_of
 
 import tinsmith as ts
 from tinsmith.tin import _kernel
+from tinsmith.tin.screening import scales
 from tinsmith.tin.screening.residuals import Residuals
 from tinsmith.tin.screening.scales import NORMAL, find_rounding, measure_scales
 
@@ -142,6 +143,19 @@ def test_scales_follow_the_noise_and_not_the_blunders():
     assert ratio.min() > 1 - margin
     assert ratio.max() < (1 + margin) * 1.25  # a tenth of a block at most spoilt, and two of them
     assert pytest.approx(1 / 0.6745, rel=1e-4) == NORMAL
+
+
+@pytest.mark.parametrize("count", [1, 2, 63, 64, 65, 5000])
+@pytest.mark.parametrize("steps", [2, 50, 10**9])
+def test_points_are_in_strips_forth_and_back(count, steps):
+    """Also points of one coordinate: their order is that of their rows."""
+    rng = np.random.default_rng(count)
+    along, across = rng.integers(0, steps, (2, count)).astype(float)
+    strips = max(1, round(np.sqrt(count / 64)))
+    strip = np.empty(count, np.int64)
+    strip[np.argsort(across)] = np.arange(count) * strips // count
+    expected = np.lexsort((np.where(strip % 2 == 0, along, -along), strip))
+    assert scales._sort_by_strips(along, across).tolist() == expected.tolist()
 
 
 def test_the_rounding_is_that_of_the_decimals():
