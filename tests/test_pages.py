@@ -74,6 +74,8 @@ def write_others(ground):
     corners = np.array([752_760.0, 4_024_302.0]) + [20, 12] * SQUARE
     pad = ts.Features.of_polygons(corners, [0, 5], [0, 1], crs=CRS, name="pad")
     ts.write(pad, "pad.geojson")
+    corners = np.array([752_755.0, 4_024_300.0]) + [4, 4] * SQUARE
+    ts.write(ts.Features.of_polygons(corners, [0, 5], [0, 1], crs=CRS), "fixed.geojson")
 
 
 @pytest.fixture(scope="module")

@@ -312,18 +312,73 @@ def read_water(
     [5.0]
     """
     with _reading(path, **options, table="polygons") as (features, parts, wanted):
-        island = next((part for part in parts if part.ring > 0), None)
-        if island is not None:
-            raise ReadError(
-                f"{features.label(island.row)} has an island, and a water polygon has one ring: "
-                "cut the polygon in two along the island."
-            )
+        _refuse_islands(parts, features, "a water polygon")
         rings = [_require_ring(part, features) for part in parts]
         names, levels = _find_texts(features, "name"), _find_levels(features, wanted, z)
         return [
             Water(ring, _require_level(ring, levels, part.row, features), name=names[part.row])
             for ring, part in zip(rings, parts, strict=True)
         ]
+
+
+def read_fixed_regions(
+    path: str | os.PathLike[str], **options: Unpack[LineOptions]
+) -> list[Float64Array]:
+    """Read regions that earthwork leaves as they are, or that have levels of their own.
+
+    Parameters
+    ----------
+    path : path-like
+    **options
+        As of :func:`read_lines`, but ``kind`` and ``drape``.
+
+    Returns
+    -------
+    list of (k, 2) or (k, 3) float64 arrays
+        A ring each; with elevations, all the same, where the column ``z``, ``level``, ``elevation``
+        or ``height`` has a level, or else the corners have one.
+
+    Raises
+    ------
+    MissingExtraError, ReadError, CrsError, LinesError
+        As :func:`read_rings`; ReadError also if a polygon has islands, corners of several
+        elevations and no level in a column, or a level that is no number.
+    """
+    with _reading(path, **options, table="polygons") as (features, parts, wanted):
+        _refuse_islands(parts, features, "a fixed region")
+        for name in _WATER_COLUMNS:
+            for row, text in enumerate(_find_texts(features, name)):
+                if text and _parse_finite(text) is None:
+                    raise ReadError(
+                        f"{features.label(row)} has the {name} '{_shorten_text(text)}': a number "
+                        "is needed, or none where the ground stays as it is."
+                    )
+        told = options.get("notes")
+        notes: list[str] = [] if told is None else told
+        what = "the level of a fixed region"
+        levels = _find_levels(features, wanted, None, what, notes)
+        rings = []
+        for part in parts:
+            ring, level = _require_ring(part, features), levels[part.row]
+            if level is None and ring.shape[1] == 3 and np.ptp(ring[:, 2]) > 0:
+                raise ReadError(
+                    f"{features.label(part.row)} has elevations from {height(ring[:, 2].min())} to "
+                    f"{height(ring[:, 2].max())}: a fixed region has one level, from a column "
+                    f"({', '.join(_WATER_COLUMNS)}) or its corners, or none to keep the ground."
+                )
+            if level is not None:
+                ring = np.column_stack([ring[:, :2], np.full(len(ring), level)])
+            rings.append(ring)
+        return rings
+
+
+def _refuse_islands(parts: Sequence[Part], features: Layer, what: str) -> None:
+    island = next((part for part in parts if part.ring > 0), None)
+    if island is not None:
+        raise ReadError(
+            f"{features.label(island.row)} has an island, and {what} has one ring: "
+            "cut the polygon in two along the island."
+        )
 
 
 def _require_ring(part: Part, features: Layer) -> Float64Array:
@@ -386,7 +441,13 @@ def _parse_finite(text: str) -> float | None:
     return value if np.isfinite(value) else None
 
 
-def _find_levels(features: Layer, wanted: Wanted, z: float | str | None) -> list[float | None]:
+def _find_levels(
+    features: Layer,
+    wanted: Wanted,
+    z: float | str | None,
+    what: str = "the height of the water",
+    notes: list[str] | None = None,
+) -> list[float | None]:
     """Return the height of each feature, None where the corners must tell; columns converted."""
     if z is not None and not isinstance(z, str):
         return [float(z)] * len(features.numbers)
@@ -402,14 +463,14 @@ def _find_levels(features: Layer, wanted: Wanted, z: float | str | None) -> list
     name, found = next(iter(levels.items()))
     if any(others != found for others in levels.values()):
         raise ReadError(
-            f"{FILE} has several columns that may hold the height of the water, and "
-            f"they differ: {', '.join(levels)}; the option `z` names one."
+            f"{FILE} has several columns that may hold {what}, and they differ: "
+            f"{', '.join(levels)}{'; the option `z` names one' if what.endswith('water') else ''}."
         )
     unit = find_named_unit(name, features)
     if unit is not None:
         wanted = wanted._replace(elevation_unit=settle_unit(wanted.elevation_unit, unit))
         features = features._replace(elevation_unit="")  # is that of the geometries
-    factor = find_elevation_factor(features, wanted, notes=[])
+    factor = find_elevation_factor(features, wanted, notes=[] if notes is None else notes)
     return [None if level is None else level * factor for level in found]
 
 

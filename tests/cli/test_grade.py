@@ -156,3 +156,68 @@ def test_what_cannot_be_balanced_is_refused(tmp_path, pad, options, text):
     assert done.exit_code == 2, done.output
     assert text in done.stderr
     assert not out.exists()
+
+
+def write_fixed(path, *levels, **columns):
+    """Write squares of 6 m in a row within the pad, with the levels of their corners if given."""
+    corners = np.array([[0.0, 0], [6, 0], [6, 6], [0, 6], [0, 0]])
+    rings = [corners + PAD[0] + [4 + 16 * k, 8] for k in range(len(levels))]
+    if not all(level is None for level in levels):
+        rings = [np.column_stack([r, np.full(5, z)]) for r, z in zip(rings, levels, strict=True)]
+    ends, count = np.arange(len(levels) + 1), 5 * np.arange(len(levels) + 1)
+    coordinates = np.concatenate(rings)
+    made = ts.Features.of_polygons(coordinates, count, ends, columns=columns, crs="EPSG:32616")
+    ts.write(made, path)
+    return [ring[:4] for ring in rings]
+
+
+def test_fixed_regions_of_a_file_are_those_of_the_library(tmp_path, pad):
+    rings = write_fixed(tmp_path / "fixed.gpkg", None, None, elevation=[np.nan, 326.0])
+    more = ("--fixed", tmp_path / "fixed.gpkg", "--balance", "-o", tmp_path / "graded.ply")
+    done = run("grade", SITE, *SITE_OPTIONS, "--pad", pad, *SLOPES, *more, "--json")
+    assert done.exit_code == 0, done.output
+    told = json.loads(done.stdout)
+    ground = ts.triangulate(ts.read(SITE, crs="EPSG:32616", elevation_unit="m"))
+    fixed = [rings[0], np.column_stack([rings[1], np.full(4, 326.0)])]
+    found = ts.balance(ground, PAD, cut_slope=2, fill_slope=3, fixed=fixed)
+    assert told["balance"]["elevation"] == pytest.approx(found.elevation, abs=1e-6)
+    assert any("Fixed region 2 is held at 326" in note for note in told["notes"])
+    at_level = write_fixed(tmp_path / "level.gpkg", 326.0)
+    given = ("--fixed", tmp_path / "level.gpkg", "--elevation", 327, "-o", tmp_path / "one.ply")
+    done = run("grade", SITE, *SITE_OPTIONS, "--pad", pad, *SLOPES, *given)
+    assert done.exit_code == 0, done.output
+    middle = at_level[0][:, :2].mean(axis=0)[None]
+    assert ts.read(tmp_path / "one.ply").interpolate(middle)[0] == pytest.approx(326.0)
+
+
+@pytest.mark.parametrize(
+    ("columns", "text"),
+    [
+        ({"elevation": ["floor", "326"]}, "has the elevation 'floor': a number is needed"),
+        ({"elevation": [326.0, 326.0], "z": [325.0, 326.0]}, "several columns that may hold"),
+        ({"elevation": [300.0, 326.0]}, "too near to each other for their elevations"),
+    ],
+)
+def test_fixed_regions_that_are_refused(tmp_path, pad, columns, text):
+    write_fixed(tmp_path / "fixed.gpkg", None, None, **columns)
+    out = tmp_path / "graded.ply"
+    more = ("--fixed", tmp_path / "fixed.gpkg", "--elevation", 327, "-o", out)
+    done = run("grade", SITE, *SITE_OPTIONS, "--pad", pad, *SLOPES, *more)
+    assert done.exit_code == 1, done.output
+    assert text in done.stderr
+    assert not out.exists()
+
+
+def test_levels_in_metres_on_a_ground_in_feet_are_not_guessed(tmp_path, ground_in_feet):
+    ground, _ = ground_in_feet
+    write_pad(tmp_path / "pad.gpkg", "EPSG:32616+5703", 327.0)
+    write_fixed(tmp_path / "fixed.gpkg", None, elevation=[326.0])
+    given = ("--pad", tmp_path / "pad.gpkg", "--fixed", tmp_path / "fixed.gpkg", *SLOPES)
+    done = run("grade", ground, *given, "-o", tmp_path / "made.ply")
+    assert done.exit_code == 1, done.output
+    assert "does not tell the unit of its elevations" in done.stderr
+    more = ("--lines-elevation-unit", "m", "-o", tmp_path / "made.ply", "--json")
+    done = run("grade", ground, *given, *more)
+    assert done.exit_code == 0, done.output
+    notes = " ".join(json.loads(done.stdout)["notes"])
+    assert f"is held at {326 * 3937 / 1200:.2f}"[:18] in notes

@@ -174,7 +174,19 @@ def generate_balance(rng: np.random.Generator) -> Case:
         "fill_slope": float(rng.choice([0.5, 1, 2])),
         "shrink_factor": float(rng.choice([1.0, 0.8, 1.1])),
         "surplus": float(rng.choice([0.0, 0.0, 4.0, -4.0])),
+        "fixed": [_draw_fixed(rng, origin, slope) for _ in range(int(rng.choice([0, 1, 1, 2])))],
+        "places": (8 + 24 * rng.random((60, 2)) + origin).tolist(),
     }
+
+
+def _draw_fixed(rng: np.random.Generator, origin: list[float], slope: Any) -> list[Any]:
+    """Return a convex ring near the pad: with a level near the ground's, or without elevations."""
+    middle = rng.uniform(13, 27, 2)
+    corners = middle + rng.uniform(0.3, 3.0) * rng.normal(size=(int(rng.integers(3, 7)), 2))
+    ring = shapely.get_coordinates(shapely.convex_hull(shapely.multipoints(corners)))[:-1]
+    z = np.full((len(ring), 1), middle @ slope + rng.normal(0, 0.3))
+    ring = ring + origin
+    return (np.hstack([ring, z]) if rng.random() < 0.4 else ring).tolist()
 
 
 def examine_balance(case: Case) -> str:
@@ -184,9 +196,12 @@ def examine_balance(case: Case) -> str:
         base = ts.triangulate(case["base"])
         hull = shapely.convex_hull(shapely.multipoints(case["pad"]))
         ring = shapely.get_coordinates(hull)[:-1]
-        found = ts.balance(base, ring, **{name: case[name] for name in names})
+        regions = [np.array(one) for one in case.get("fixed", [])]
+        how = {name: case[name] for name in names}
+        found = ts.balance(base, ring, fixed=regions or None, **how)
     except ts.PointsError as error:
-        return "refused: " + ("jump" if "another part" in str(error) else "ground ends")
+        words = {"another part": "jump", "meet, at": "fixed regions meet", "leave nothing": "fixed"}
+        return "refused: " + next((w for k, w in words.items() if k in str(error)), "ground ends")
     except (ts.LinesError, ts.OptionError):
         return "refused: pad"
     _require_sound(base, found.tin)
@@ -199,7 +214,46 @@ def examine_balance(case: Case) -> str:
     rest = table["cut"] * case["shrink_factor"] + case["surplus"] - table["fill"]
     assert abs(rest - table["balance"]) <= 1e-9 * moved + 1e-12
     assert abs(rest) <= 1e-4 * moved + 1e-6 * table["sensitivity"], f"{rest} remain"
-    return "inclined" if case["gradient"] else "level"
+    for region in regions:
+        _require_fixed(case, base, found, region)
+    label = "inclined" if case["gradient"] else "level"
+    return f"{label}, fixed" if regions else label
+
+
+def _require_fixed(case: Case, base: Any, found: Any, ring: Any) -> None:
+    """Require the ground or the level in a region, and slopes to it."""
+    graded = found.tin
+    shape = shapely.Polygon(ring[:, :2])
+    drawn = np.random.default_rng(0).dirichlet(np.ones(len(ring)), 20) @ ring[:, :2]
+    xy = np.concatenate([drawn, case["places"]])
+    away = shapely.distance(shape, shapely.points(xy))
+    feet = shapely.get_coordinates(shapely.shortest_line(shapely.points(xy), shape))[1::2]
+    own, new = base.interpolate(xy), graded.interpolate(xy)
+    level = base.interpolate(feet) if ring.shape[1] == 2 else np.full(len(xy), ring[0, 2])
+    inside = away == 0.0
+    kept = own if ring.shape[1] == 2 else level
+    off = np.abs(new - kept)[inside]
+    assert not (off > 1e-6).any(), f"a fixed region is off by {np.nanmax(off)}"
+    if len(case["fixed"]) == 1:
+        pad = shapely.convex_hull(shapely.multipoints(case["pad"]))
+        how = {name: case[name] for name in ("gradient", "cut_slope", "fill_slope")}
+        plain = ts.grade(base, shapely.get_coordinates(pad)[:-1], found.elevation, **how)
+        _require_slopes(case, plain, graded, np.stack([feet, xy], axis=1)[~inside], level[~inside])
+
+
+def _require_slopes(case: Case, plain: Any, graded: Any, lines: Any, level: Any) -> None:
+    """Require that slopes are made where, along a line from the region, all is beyond them."""
+    shares = np.linspace(0.02, 1.0, 50)[:, None, None]
+    away = np.hypot(*(lines[:, 1] - lines[:, 0]).T)
+    along = lines[:, 0] + shares * (lines[:, 1] - lines[:, 0])
+    found = plain.interpolate(along.reshape(-1, 2)).reshape(along.shape[:2])
+    new = graded.interpolate(lines[:, 1])
+    for sign, slope in ((1.0, case["cut_slope"]), (-1.0, case["fill_slope"])):
+        rise = shares[:, :, 0] * away / slope
+        is_beyond = ((found - level) * sign > rise + 1e-3).all(axis=0)
+        off = ((new - level) * sign - away / slope)[is_beyond]
+        most = away[is_beyond] / slope * _FACETS + 1e-6
+        assert (np.abs(off) <= most).all(), f"a slope of a fixed region is off by {off}"
 
 
 CAMPAIGNS = (

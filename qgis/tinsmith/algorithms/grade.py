@@ -27,7 +27,17 @@ class GradeAlgorithm(CommandAlgorithm):
         "which the cut makes the fill."
     )
     surfaces = (Surface(words="Ground"),)
-    lines = (Lines("PAD", "Pad", "--pad", "A layer of one polygon.", kind=POLYGONS, required=True),)
+    lines = (
+        Lines("PAD", "Pad", "--pad", "A layer of one polygon.", kind=POLYGONS, required=True),
+        Lines(
+            "FIXED",
+            "Fixed regions",
+            "--fixed",
+            "The ground stays, or the level in a column z, level, elevation or height.",
+            kind=POLYGONS,
+            advanced=True,
+        ),
+    )
     options = (
         number(
             "ELEVATION",

@@ -22,6 +22,7 @@ LISTED_BY = {
     "Tiles, for more points than memory holds": "raster",
     **dict.fromkeys(("Reprojection", "Coordinates on the ground", "Input", "Output"), "convert"),
     "Sheets": "plan",
+    "Errors of elevations": "volume",
 }
 """Subjects of options that only the help of one of the commands lists that have them."""
 _OF_FORMATS = "tinsmith.options_of_formats"

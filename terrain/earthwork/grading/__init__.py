@@ -1,10 +1,11 @@
 """Surfaces put into others: pasted, and graded pads with their side slopes."""
 
 from .balances import BalancedPad, balance
-from .grades import grade, outline_patch, require_on_ground
+from .grades import grade
 from .merging import merge
 from .pads import Pad
 from .pasting import join_surfaces, paste
+from .patches import outline_patch, require_on_ground
 from .seams import arrange_rings, find_area, find_first_near, measure_tolerance
 from .slopes import Slope, lie_on, meet_ground, require_ground
 

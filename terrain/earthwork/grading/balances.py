@@ -16,18 +16,21 @@ from ....base.results import Table
 from ....base.sentences import height
 from ...surface import find_reference
 from ..volumes import volume
-from .grades import make_patch, require_on_ground, require_slopes
+from .fixed import Site, hold, measure_held, read_fixed
+from .grades import require_slopes
 from .pads import make_pad, read_polygon
 from .pasting import join_surfaces
+from .patches import make_patch, require_on_ground
 from .seams import find_area
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Callable, Mapping, Sequence
 
     from numpy.typing import ArrayLike
 
     from ....base.georeference import Reference
     from ....tin import TIN
+    from .fixed import Fixed
     from .pads import Pad
 
 _ENOUGH = 1e-9
@@ -37,6 +40,9 @@ _NEAR = 1e-7
 _NEAR_LOST = 1e-4
 """The same where the ground ends before slopes that start higher, or lower, do."""
 _MOST_TRIALS = 60
+_LEAST_MOVING = 0.1
+"""Of the area of a pad: so much of it moves at least where regions and their slopes are fixed."""
+_SUMS = ("cut", "fill", "cut_area", "fill_area")
 _JUMP = 1e-4
 """Of what is moved: more that remains is a jump, where slopes begin to reach another part."""
 
@@ -98,17 +104,57 @@ class BalancedPad:
 class Trial(NamedTuple):
     """A pad at some elevation."""
 
-    patch: TIN
-    """Pad and slopes."""
-    volumes: Table
+    surface: TIN
+    """Pad and slopes; with fixed regions the graded ground."""
+    volumes: Mapping[str, float]
+    """``cut``, ``fill``, ``cut_area`` and ``fill_area``."""
     balance: float
     slope: float
     """By how much the balance falls for each unit that the pad is raised."""
+    notes: tuple[str, ...]
 
     @property
     def moved(self) -> float:
         """What is cut and filled together."""
-        return float(self.volumes["cut"][0] + self.volumes["fill"][0])
+        return self.volumes["cut"] + self.volumes["fill"]
+
+
+class _Trials(NamedTuple):
+    """What does not change from trial to trial."""
+
+    tin: TIN
+    site: Site
+    shrink: float
+    surplus: float
+    fixed: list[Fixed]
+
+    def attempt(self, pad: Pad) -> Trial:
+        """Measure a pad and its slopes."""
+        tin, (ratios, reference, area) = self.tin, self.site
+        patch = make_patch(tin, pad, ratios, reference.up, area, Progress(None))
+        if self.fixed:
+            return self._hold(patch, pad)
+        table = volume(tin, patch)
+        sums = {name: float(table[name][0]) for name in _SUMS}
+        areas = self.shrink * sums["cut_area"] + sums["fill_area"]
+        areas += float(table["unchanged_area"][0])  # of which any rise makes fill
+        return self._make_trial(patch, sums, areas, tuple(table.notes))
+
+    def _hold(self, patch: TIN, pad: Pad) -> Trial:
+        """Measure it with the fixed regions: only where nothing of them is does the pad rise."""
+        tin, (_, reference, area) = self.tin, self.site
+        graded = join_surfaces(tin, patch, reference, area, "daylight")
+        held = hold(graded, patch, pad.polygon, self.fixed, self.site)
+        works = find_area(patch)
+        sums, moving = measure_held(tin, held, works, reference.up)
+        areas = self.shrink * moving["cut_area"] + moving["fill_area"] + moving["unchanged_area"]
+        return self._make_trial(held.surface, sums, areas, (*reference.notes, *held.notes))
+
+    def _make_trial(
+        self, surface: TIN, sums: Mapping[str, float], areas: float, notes: tuple[str, ...]
+    ) -> Trial:
+        rest = sums["cut"] * self.shrink + self.surplus - sums["fill"]
+        return Trial(surface, sums, rest, areas * self.site.reference.up, notes)
 
 
 @product
@@ -122,6 +168,7 @@ def balance(
     shrink_factor: float = 1.0,
     swell_factor: float = 1.0,
     surplus: float = 0.0,
+    fixed: Any = None,
     progress: Callable[[float], None] | None = None,
 ) -> BalancedPad:
     """Find the elevation at which a pad's cut makes its fill, and grade it into the ground.
@@ -145,6 +192,9 @@ def balance(
     surplus : float, optional
         Volume of fill that comes from elsewhere, as from parts of the site whose elevations are
         fixed, in CRS units cubed; negative if it is needed there. Default 0.
+    fixed : polygons, optional
+        Regions that stay as they are, or have levels of their own, as of :func:`tinsmith.grade`.
+        What is cut and filled for them and their slopes counts. Default none.
     progress : callable, optional
         Called with the fraction done, ascending to 1.0. What it raises ends the call.
 
@@ -160,7 +210,7 @@ def balance(
     PointsError
         If the pad lies off the ground, or the ground ends before slopes meet it at every elevation
         that could balance; if none does, since the balance jumps where slopes begin to reach
-        another part of the ground.
+        another part of the ground. With fixed regions as :func:`tinsmith.grade`.
 
     Notes
     -----
@@ -190,18 +240,19 @@ def balance(
     require_on_ground(area, polygon)
     start = start._replace(level=_find_mean(tin, start))
 
+    regions, told = read_fixed(fixed, tin, area)
+    trials = _Trials(tin, Site(slopes, reference, area), shrink, extra, regions)
+
     def attempt(level: float) -> Trial:
-        at = start._replace(level=level)
-        patch = make_patch(tin, at, slopes, reference.up, area, Progress(None))
-        table = volume(tin, patch)
-        cut, fill = float(table["cut"][0]), float(table["fill"][0])
-        areas = shrink * float(table["cut_area"][0]) + float(table["fill_area"][0])
-        areas += float(table["unchanged_area"][0])  # of which any rise makes fill
-        return Trial(patch, table, cut * shrink + extra - fill, areas * reference.up)
+        return trials.attempt(start._replace(level=level))
 
     trying = Progress(done.stage(0.0, 0.7))
-    level, found = _find_root(attempt, start.level, float(polygon.area) * reference.up, trying)
-    graded = join_surfaces(tin, found.patch, reference, area, "daylight")
+    least = float(polygon.area) * reference.up * (_LEAST_MOVING if regions else 1.0)
+    level, found = _find_root(attempt, start.level, least, trying)
+    found = found._replace(notes=(*found.notes, *told))
+    graded = found.surface
+    if not regions:
+        graded = join_surfaces(tin, graded, reference, area, "daylight")
     table = _make_table(level, found, (shrink, swell), reference)
     done.end()
     return BalancedPad(graded, table, tuple(table.notes))
@@ -220,7 +271,7 @@ def _find_root(
 ) -> tuple[float, Trial]:
     """Return the elevation at which a balance that falls is 0, and the trial there.
 
-    ``area`` of the pad is the least by which it falls. Raises PointsError if there is none.
+    ``area`` of the pad is some of the least by which it falls. Raises PointsError if there is none.
     """
     low, high = -np.inf, np.inf  # balances above and below 0, or what the ground does not allow
     found, at = attempt(level), level
@@ -269,9 +320,9 @@ def _make_table(
 ) -> Table:
     shrink, swell = factors
     volumes, units = found.volumes, reference.units
-    cut = float(volumes["cut"][0])
+    cut = volumes["cut"]
     columns = {"elevation": level}
-    columns |= {name: float(volumes[name][0]) for name in ("cut", "fill", "cut_area", "fill_area")}
+    columns |= {name: volumes[name] for name in _SUMS}
     columns |= {"fill_from_cut": cut * shrink, "balance": found.balance}
     columns |= {"sensitivity": found.slope, "haul": cut * swell}
     volume_unit, unit = units.volume, reference.elevation_unit
@@ -284,5 +335,5 @@ def _make_table(
         {name: np.array([value]) for name, value in columns.items()},
         units=table_units,
         name="balance",
-        notes=list(volumes.notes),
+        notes=list(found.notes),
     )

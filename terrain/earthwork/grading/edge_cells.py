@@ -14,7 +14,7 @@ import numpy as np
 if TYPE_CHECKING:
     from ....base.arrays import BoolArray, Float64Array, Int64Array
 
-_FACET = np.pi / 90
+FACET = np.pi / 90
 """Angle between the rays of a fan."""
 _NONE = -1
 """Touched by a circle as large as the reach: nothing."""
@@ -121,7 +121,7 @@ class _Outline:
         places = [np.column_stack([np.zeros(self._n), self._lengths]).ravel()]
         for corner in np.flatnonzero(self._turn > 0).tolist():
             angle = float(self._turn[corner])
-            count = int(np.ceil(angle / _FACET * (1.0 - _SHARE))) + 1
+            count = int(np.ceil(angle / FACET * (1.0 - _SHARE))) + 1
             cells.append(np.full(count, self._n + corner))
             places.append(np.linspace(0.0, angle, count))
         return np.concatenate(cells), np.concatenate(places)

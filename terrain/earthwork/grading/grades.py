@@ -2,37 +2,25 @@
 
 from __future__ import annotations
 
-import math
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from ....base.checks import as_number
-from ....base.errors import PointsError
 from ....base.products import product
 from ....base.progress import Progress
-from ....base.sentences import coordinate
-from ....tin import Breakline, triangulate
 from ...surface import find_reference
+from .fixed import Site, hold, read_fixed
 from .pads import find_level, make_pad, read_polygon
 from .pasting import join_surfaces
-from .seams import find_area, measure_tolerance
-from .slopes import find_slope
+from .patches import make_patch, require_on_ground
+from .seams import find_area
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from numpy.typing import ArrayLike
 
-    from ....base.arrays import Float64Array
     from ....tin import TIN
-    from .pads import Pad
-    from .slopes import Slope
-
-_SHARE = 1e-6
-"""Of the area of pad and slopes: less of it may lie beyond the ground by rounding."""
-_SLOPE = 0.2
-"""Of the work as it is told, following the one slope or the other."""
 
 
 @product
@@ -44,6 +32,7 @@ def grade(
     cut_slope: float,
     fill_slope: float,
     gradient: tuple[float, float] | None = None,
+    fixed: Any = None,
     progress: Callable[[float], None] | None = None,
 ) -> TIN:
     """Grade a pad into the ground, with side slopes to where they meet it.
@@ -66,6 +55,12 @@ def grade(
     gradient : tuple of two floats, optional
         Rise of the pad to the east and to the north, vertical over horizontal: (0.02, 0) is 2 % up
         to the east. Default level. A pad that is not level must be convex.
+    fixed : polygons, optional
+        Regions that pad and slopes do not change: rings, polygons, a mapping of names to them,
+        Features, or a GeoDataFrame. One with a level, as an elevation of all its corners or in a
+        column ``elevation``, ``z``, ``level`` or ``height``, has that level; in any other one the
+        ground stays as it is. Slopes of the same kind lead from it to the pad, and count there.
+        Default none.
     progress : callable, optional
         Called with the fraction done, ascending to 1.0, as slopes are followed and pasted into the
         ground. What it raises ends the call.
@@ -74,8 +69,9 @@ def grade(
     -------
     TIN
         Pad, slopes, and the ground beyond. Breaklines are named "pad edge", "daylight" and
-        "slope", where slopes break. Volumes are those of ``ts.volume(tin, graded)``. Vertices of
-        the ground keep their attributes, new ones have none.
+        "slope", where slopes break, and "fixed" around fixed regions. Volumes are those of
+        ``ts.volume(tin, graded)``. Vertices of the ground keep their attributes, new ones have
+        none.
 
     Raises
     ------
@@ -83,9 +79,12 @@ def grade(
         If a slope is no number above 0, or the elevation none; if the gradient is as steep as a
         slope.
     LinesError
-        If the pad is no ring, or crosses itself; if one that is not level has notches.
+        If the pad is no ring, or crosses itself; if one that is not level has notches. If fixed
+        regions lie over each other, or one whose ground is not level has notches where slopes
+        reach it.
     PointsError
         If the pad lies off the ground, or the ground ends before a slope meets it: with the place.
+        If slopes of fixed regions meet each other, or the regions leave nothing of the pad.
     CrsError
         If coordinates are angles.
 
@@ -96,6 +95,10 @@ def grade(
     distance. Where the pad has a notch, slopes meet where they are as far from both edges. What is
     cut or filled farther away, and does not reach the pad along its slope, stays ground. Time and
     vertices are in proportion to the corners of the pad.
+
+    Where fixed regions are, the surface is that without them, but nowhere higher than the cut slope
+    that rises from their edge, nor lower than the fill slope that falls from it. So slopes to a
+    region may take a part of the pad, which ``report.notes`` tell.
 
     Examples
     --------
@@ -114,40 +117,16 @@ def grade(
     made = make_pad(polygon, level, gradient, reference.up, *slopes)
     area = find_area(tin)
     require_on_ground(area, polygon)
+    regions, told = read_fixed(fixed, tin, area)
     patch = make_patch(tin, made, slopes, reference.up, area, done)
     done(0.5)
     graded = join_surfaces(tin, patch, reference, area, "daylight", progress=done.stage(0.5, 1.0))
+    if regions:
+        held = hold(graded, patch, polygon, regions, Site(slopes, reference, area))
+        notes = (*reference.notes, *told, *held.notes)
+        graded = held.surface.replace(report=replace(held.surface.report, notes=notes))
     done.end()
     return graded
-
-
-def make_patch(
-    tin: TIN, pad: Pad, ratios: tuple[float, float], up: float, area: Any, done: Progress
-) -> TIN:
-    """Return a pad that lies on the ground and its slopes, of cuts and of fills, as a surface.
-
-    ``up`` is the factor from elevations to the unit of eastings, and ``area`` what the ground
-    covers. Raises PointsError if it ends before a slope meets it.
-    """
-    cut, fill = (sign / (ratio * up) for sign, ratio in zip((1, -1), ratios, strict=True))
-    local = tin.replace(crs=None, elevation_unit=None)
-    used = tin.points[tin.triangles, 2]
-    low, high = pad.find_range()
-    farthest = {cut: (used.max() - low) / cut, fill: (used.min() - high) / fill}
-    slopes = []
-    # Farther away is no ground.
-    across = math.hypot(*(tin.points.max(axis=0) - tin.points.min(axis=0))[:2])
-    for number, (rate, reach) in enumerate(farthest.items(), 1):
-        if reach > 0:
-            slopes.append(find_slope(local, area, pad, rate, min(float(reach), across)))
-        done(number * _SLOPE)
-    patch = build_patch(tin, pad, slopes)
-    most = _SHARE * patch.area
-    require_on_ground(area, find_area(patch), "A slope reaches beyond", most)
-    return patch
-
-
-# ---------------------------------------------------------------- what is given
 
 
 def require_slopes(cut_slope: Any, fill_slope: Any) -> tuple[float, float]:
@@ -158,122 +137,3 @@ def require_slopes(cut_slope: Any, fill_slope: Any) -> tuple[float, float]:
     unit = "(horizontal over vertical: 2 is 2:1)"
     cut = as_number("cut_slope", cut_slope, "a ratio", above=0, unit=unit)
     return cut, as_number("fill_slope", fill_slope, "a ratio", above=0, unit=unit)
-
-
-def require_on_ground(
-    area: Any, shape: Any, what: str = "The pad lies off", most: float = 0.0
-) -> None:
-    """Refuse a pad, or a shape of which more than an area lies off the ground.
-
-    Raises PointsError.
-    """
-    import shapely
-
-    beyond = shapely.difference(shape, area)
-    if beyond.area > most or (most == 0.0 and not beyond.is_empty):
-        place = shapely.point_on_surface(beyond)
-        raise PointsError(f"{what} the ground, at {coordinate(place.x)} {coordinate(place.y)}.")
-
-
-def build_patch(tin: TIN, pad: Pad, slopes: list[Slope]) -> TIN:
-    """Return pad and slopes as one surface."""
-    edges, rings, lines = outline_patch(tin, pad, slopes)
-    return triangulate(
-        np.concatenate(rings),
-        breaklines=[*(Breakline(one, name="pad edge", priority=1) for one in edges), *lines],
-        boundary=rings,
-        duplicates="last",
-        crs=tin.crs,
-        elevation_unit=tin.elevation_unit,
-    )
-
-
-def outline_patch(
-    tin: TIN, pad: Pad, slopes: list[Slope]
-) -> tuple[list[Float64Array], list[Float64Array], list[Breakline]]:
-    """Return the edges of a pad, the rings around pad and slopes, and lines where slopes break."""
-    import shapely
-
-    tolerance = measure_tolerance(tin.points)
-    rims = [rim for slope in slopes for rim in slope.find_rim(pad.polygon, tolerance)]
-    edges = [_insert(pad, ring, rims, tolerance) for ring in shapely.get_rings(pad.polygon)]
-    rings = [_lift(ring, tin, slopes, [*edges, *rims]) for ring in _trace(edges, rims, slopes)]
-    breaks = [line for slope in slopes for line in slope.find_breaks()]
-    _snap(breaks, np.concatenate([*edges, *rims]), tolerance)
-    lines = [Breakline(line, name="slope") for line in breaks if np.ptp(line[:, :2], axis=0).any()]
-    return edges, rings, lines
-
-
-def _insert(pad: Pad, exterior: Any, rims: list[Float64Array], tolerance: float) -> Float64Array:
-    """Return a ring of the pad with the ends of daylight lines, which are moved onto it."""
-    import shapely
-
-    ring = shapely.get_coordinates(exterior)
-    stations = {float(exterior.project(shapely.Point(xy))): xy for xy in ring[:-1]}
-    for rim in rims:
-        for end in (0, -1):
-            here = shapely.Point(rim[end, :2])
-            if exterior.distance(here) > tolerance:
-                continue
-            station = float(exterior.project(here))
-            near = [one for one in stations if abs(one - station) <= tolerance]
-            if not near and abs(station - exterior.length) <= tolerance:
-                near = [0.0]
-            place = stations.setdefault(near[0] if near else station, rim[end, :2].copy())
-            rim[end] = [*place, *pad.measure_heights(place[None])]
-    path = np.array([stations[one] for one in sorted(stations)])
-    closed = np.vstack([path, path[:1]])
-    return np.column_stack([closed, pad.measure_heights(closed)])
-
-
-def _trace(
-    edges: list[Float64Array], rims: list[Float64Array], slopes: list[Slope]
-) -> list[Float64Array]:
-    """Return the rings around pad and slopes, (k, 2) each."""
-    import shapely
-
-    lines = [shapely.linestrings(line[:, :2]) for line in (*edges, *rims)]
-    work = shapely.union_all(lines)
-    faces = shapely.get_parts(shapely.polygonize(shapely.get_parts(work)))
-    pad = shapely.Polygon(edges[0][:, :2], [edge[:, :2] for edge in edges[1:]])
-    places = shapely.point_on_surface(faces)
-    shapely.prepare(pad)
-    is_kept = shapely.contains(pad, places)
-    for slope in slopes:
-        is_kept |= slope.are_made(shapely.get_coordinates(places))
-    joined = shapely.coverage_union_all(faces[is_kept])
-    return [shapely.get_coordinates(ring) for ring in shapely.get_rings(joined)]
-
-
-def _lift(
-    ring: Float64Array, tin: TIN, slopes: list[Slope], lines: list[Float64Array]
-) -> Float64Array:
-    """Return a ring with elevations: where daylight lines cross, those of the ground.
-
-    Where that ends, by rounding, those of the slope.
-    """
-    known = {(x, y): z for x, y, z in np.concatenate(lines).tolist()}
-    found = tin.interpolate(ring).tolist()
-    z = [known.get((x, y), own) for (x, y), own in zip(ring.tolist(), found, strict=True)]
-    for slope in slopes:
-        z = [
-            slope.interpolate(place) if np.isnan(own) else own
-            for own, place in zip(z, ring, strict=True)
-        ]
-    return np.column_stack([ring, z])
-
-
-def _snap(lines: list[Float64Array], places: Float64Array, tolerance: float) -> None:
-    """Move the ends of lines onto the nearest places that are there."""
-    import shapely
-
-    if not lines:
-        return
-    ends = np.array([line[end] for line in lines for end in (0, -1)])
-    tree = shapely.STRtree(shapely.points(places[:, :2]))
-    found, near = tree.query(shapely.points(ends[:, :2]), "dwithin", distance=tolerance)
-    apart = np.hypot(*(places[near, :2] - ends[found, :2]).T)
-    order = np.lexsort((near, apart, found))
-    moved, first = np.unique(found[order], return_index=True)
-    for end, place in zip(moved.tolist(), near[order][first].tolist(), strict=True):
-        lines[end // 2][-(end % 2)] = places[place]

@@ -3,17 +3,36 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 
 import numpy as np
 
 from ....base.checks import as_floats, as_number
 from ....base.errors import LinesError, OptionError
 from ....base.sentences import height
+from ....tin import TIN
 from ....tin.constraints import gather_rings_of_regions
+from .distances import measure_distances
 
 if TYPE_CHECKING:
     from ....base.arrays import Float64Array
+
+
+class Work(Protocol):
+    """What slopes begin at: a pad, or a region that is held fixed."""
+
+    @property
+    def polygon(self) -> Any:
+        """Of shapely, without holes."""
+
+    def measure_heights(self, xy: Float64Array) -> Float64Array:
+        """Return the elevations of its edge at places, (n, 2)."""
+
+    def find_range(self) -> tuple[float, float]:
+        """Return the lowest and the highest elevation."""
+
+    def make_skirt(self, reach: float, rate: float, tolerance: float) -> TIN:
+        """Return the slope all around it, which rises by ``rate`` for a unit along."""
 
 
 class Pad(NamedTuple):
@@ -45,6 +64,13 @@ class Pad(NamedTuple):
 
         heights = self.measure_heights(shapely.get_coordinates(self.polygon.exterior))
         return float(heights.min()), float(heights.max())
+
+    def make_skirt(self, reach: float, rate: float, tolerance: float) -> TIN:
+        """Return the slope all around it, which rises by ``rate`` for a unit along."""
+        distances = measure_distances(self.polygon, reach, tolerance)
+        points = distances.points * (1.0, 1.0, rate)
+        points[:, 2] += self.measure_feet(points[:, :2])
+        return TIN.from_triangles(points, distances.triangles)
 
     def measure_feet(self, xy: Float64Array) -> Float64Array:
         """Return the elevations of its edge where it is nearest to places, (n, 2)."""

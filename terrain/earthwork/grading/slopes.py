@@ -11,12 +11,11 @@ from ....base.sentences import coordinate
 from ....tin import TIN, topology
 from ..differences import difference
 from ..zones import classify, join_segments, number_zones
-from .distances import measure_distances
 from .seams import measure_tolerance
 
 if TYPE_CHECKING:
     from ....base.arrays import BoolArray, Float64Array, Int32Array, Int64Array
-    from .pads import Pad
+    from .pads import Work
 
 _MARGIN = 1.01
 """Slopes are made so much longer than they can be: at their end there is no daylight."""
@@ -69,37 +68,41 @@ class Slope(NamedTuple):
         return [shapely.get_coordinates(one, include_z=True) for one in shapely.get_parts(merged)]
 
 
-def find_slope(tin: TIN, area: Any, work: Pad, rate: float, reach: float) -> Slope:
+def find_slope(
+    tin: TIN, area: Any, work: Work, rate: float, reach: float, *, least: float = 0.0
+) -> Slope:
     """Follow a slope from the pad until daylight, at most as far as the ground's relief needs.
 
     ``tin`` is the ground, without a CRS, and ``area`` what it covers; ``rate`` is the rise of the
     slope for a unit along, negative over a fill, and ``reach`` how far it can go on the highest, or
-    lowest, of the ground. Raises PointsError if the ground ends before.
+    lowest, of the ground. It begins where the edge is off the ground by more than ``least``, or if
+    that is 0 where it would cut or fill. Raises PointsError if the ground ends before.
     """
     pad = work.polygon
     far: float = min(reach, _estimate_reach(tin, work, rate))
     tolerance = measure_tolerance(tin.points)
     while True:
-        distances = measure_distances(pad, far * _MARGIN, tolerance)
-        points = distances.points * (1.0, 1.0, rate)
-        points[:, 2] += work.measure_feet(points[:, :2])
-        skirt = TIN.from_triangles(points, distances.triangles)
-        slope, ends = meet_ground(tin, skirt, pad, -np.sign(rate))
+        skirt = work.make_skirt(far * _MARGIN, rate, tolerance)
+        slope, ends = meet_ground(tin, skirt, pad, -np.sign(rate), least)
         if not len(ends):
             return slope
         require_ground(ends if far >= reach else _take_on(area, ends, tolerance), rate)
         far = float(min(2.0 * far, reach))
 
 
-def meet_ground(tin: TIN, skirt: TIN, pad: Any, sign: float) -> tuple[Slope, Float64Array]:
+def meet_ground(
+    tin: TIN, skirt: TIN, pad: Any, sign: float, least: float = 0.0
+) -> tuple[Slope, Float64Array]:
     """Return where a surface around a pad is cut into the ground, and where it ends before it.
 
-    ``sign`` is -1 of cuts, 1 of fills, ``pad`` a polygon of shapely. The ends, (k, 2), are middles
+    ``sign`` is -1 of cuts, 1 of fills, ``pad`` a polygon of shapely. Parts that are off the ground
+    by no more than ``least`` along its edge are left. The ends, (k, 2), are middles
     of edges at the outline of the surface, off the pad.
     """
     tolerance = measure_tolerance(tin.points)
-    found = difference(_take_near(tin, skirt), skirt).tin
-    is_made = _find_made(found, pad, sign, tolerance)
+    xy = skirt.points[:, :2]
+    found = difference(take_near(tin, xy.min(axis=0), xy.max(axis=0)), skirt).tin
+    is_made = _find_made(found, pad, sign, tolerance, least=least)
     start, end = _find_outline(found, is_made, only_outer=True)
     middles = (found.points[start, :2] + found.points[end, :2]) / 2
     ends = middles[~lie_on(pad, middles, tolerance)]
@@ -124,7 +127,7 @@ def _take_on(area: Any, places: Float64Array, tolerance: float) -> Float64Array:
     return places[lie_on(area, places, tolerance)]
 
 
-def _estimate_reach(tin: TIN, work: Pad, rate: float) -> float:
+def _estimate_reach(tin: TIN, work: Work, rate: float) -> float:
     """Return how far a slope goes on ground as far from the pad as that at its edge."""
     import shapely
 
@@ -135,16 +138,15 @@ def _estimate_reach(tin: TIN, work: Pad, rate: float) -> float:
     return float(max(2.0 * rise / abs(rate), pad.length / 64))
 
 
-def _take_near(tin: TIN, skirt: TIN) -> TIN:
-    """Return the triangles of the ground in the box of a skirt."""
+def take_near(tin: TIN, low: Float64Array, high: Float64Array) -> TIN:
+    """Return the triangles of a surface that reach into a box, (2,) each, without a CRS."""
     xy = tin.points[tin.triangles, :2]
-    low, high = skirt.points[:, :2].min(axis=0), skirt.points[:, :2].max(axis=0)
     near = ((xy.max(axis=1) >= low) & (xy.min(axis=1) <= high)).all(axis=1)
     used, corners = np.unique(tin.triangles[near], return_inverse=True)
     return TIN.from_triangles(tin.points[used], corners.reshape(-1, 3))
 
 
-def _find_made(found: TIN, pad: Any, sign: float, tolerance: float) -> BoolArray:
+def _find_made(found: TIN, pad: Any, sign: float, tolerance: float, *, least: float) -> BoolArray:
     """Tell which triangles of a difference are cut (or filled) and hang together with the pad."""
     mesh = found.triangulation
     classes = classify(mesh)
@@ -152,7 +154,8 @@ def _find_made(found: TIN, pad: Any, sign: float, tolerance: float) -> BoolArray
     triangle, corner = np.nonzero((mesh.neighbors < 0) & (classes == sign)[:, None])
     start, end = topology.ends(mesh.triangles, triangle, corner)
     middles = (mesh.points[start, :2] + mesh.points[end, :2]) / 2
-    at_pad = triangle[lie_on(pad, middles, tolerance)]
+    is_off = (mesh.points[start, 2] + mesh.points[end, 2]) / 2 * sign > least if least else True
+    at_pad = triangle[lie_on(pad, middles, tolerance) & is_off]
     return np.isin(part, part[at_pad])
 
 

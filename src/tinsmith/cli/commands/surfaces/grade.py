@@ -35,9 +35,20 @@ _FACTORS = {"shrink_factor": 1.0, "swell_factor": 1.0, "surplus": 0.0}
     help="Find the elevation at which the cut makes the fill, in place of --elevation.",
 )
 @product_options("terrain.earthwork.grading.balances.balance", "shrink_factor swell_factor surplus")
+@file_option(
+    "--fixed",
+    "Vector file of polygons that the pad and its slopes do not change: the ground stays, or the "
+    "level in a column z, level, elevation or height, or of the corners.",
+)
 @surface_options()
 def grade(
-    file: Path, pad: Path, elevation: float | None, balance: bool, job: Job, **asked: Any
+    file: Path,
+    pad: Path,
+    elevation: float | None,
+    balance: bool,
+    fixed: Path | None,
+    job: Job,
+    **asked: Any,
 ) -> None:
     r"""Grade a pad into the TIN in FILE, or built from the points in it.
 
@@ -58,10 +69,13 @@ def grade(
     factors = {name: asked.pop(name) for name in _FACTORS}
     _require_one(elevation, factors, balance=balance)
     kinds = ("TIN", "Table") if balance else ("TIN",)
-    planned = job.plan(job.list_inputs(file, more=name_features(pad, "--pad")), *kinds)
+    more = [*name_features(pad, "--pad"), *name_features(fixed, "--fixed")]
+    planned = job.plan(job.list_inputs(file, more=more), *kinds)
     tin = job.read_tin(file)
     notes: list[str] = []
     ring = _read_ring(pad, tin, job, notes, drape=elevation is not None or balance)
+    if fixed is not None:
+        asked["fixed"] = _read_fixed(fixed, tin, job, notes)
     rows: list[tuple[str, str]] = []
     with job.step("Grading") as progress:
         if balance:
@@ -115,6 +129,21 @@ def _read_ring(path: Path, tin: TIN, job: Job, notes: list[str], *, drape: bool)
         held = f"{counted(len(found), 'polygon')} of {counted(rings, 'ring')}"
         raise Failure(f"'{named}' holds {held}: a pad is one ring.")
     return found[0][0]
+
+
+def _read_fixed(path: Path, tin: TIN, job: Job, notes: list[str]) -> Any:
+    """Return the rings of a file of fixed regions, with their levels."""
+    from ....io.vector import read_fixed_regions, split_layer
+
+    named, layer = split_layer(path)
+    return read_fixed_regions(
+        named,
+        crs=tin.crs,
+        target_unit=tin.elevation_unit,
+        elevation_unit=job.building.lines_elevation_unit,
+        layer=layer,
+        notes=notes,
+    )
 
 
 def _list_balance(table: Table) -> list[tuple[str, str]]:
