@@ -40,6 +40,7 @@ LARGEST_PRIORITY = 2**31 - 1
 
 _SHOWN_LETTERS = 60
 _WATER_COLUMNS = ("z", "level", "elevation", "height")
+_WALL_COLUMNS = {"top": ("top",), "foot": ("foot", "bottom")}
 
 
 class LineOptions(TypedDict, total=False):
@@ -92,6 +93,7 @@ def read_lines(
     path: str | os.PathLike[str],
     *,
     kind: BreaklineKind | None = None,
+    walls: bool = False,
     **options: Unpack[LineOptions],
 ) -> list[Breakline]:
     """Read breaklines.
@@ -115,6 +117,9 @@ def read_lines(
         Condition on the columns, as in SQL.
     kind : {"hard", "soft"}, optional
         Kind of all of them, whatever the file says.
+    walls : bool
+        Make two breaklines along one line of each that has a second elevation in a column: ``top``,
+        or ``foot`` or ``bottom``. With both the geometry needs no elevations.
     drape : bool
         Leave heights in the file aside.
     notes : list of str, optional
@@ -153,17 +158,69 @@ def read_lines(
     ...     [line.coords.tolist() for line in ts.read_lines(path)]
     [[[0.0, 0.0, 5.0], [4.0, 3.0, 6.0]]]
     """
-    with _reading(path, **options) as (features, parts, _):
+    with _reading(path, **options) as (features, parts, wanted):
         notes = options.get("notes")
         if notes is not None and not options.get("drape"):
             notes.extend(_describe_unused(features, parts))
         kinds = _parse_kinds(features) if kind is None else [kind] * len(features.numbers)
         priorities, names = _parse_priorities(features), _find_texts(features, "name")
+        paths = [(part, part.coords, names[part.row]) for part in parts]
+        if walls and not options.get("drape"):
+            paths = _find_faces(features, parts, wanted, [] if notes is None else notes)
+        elif notes is not None:
+            notes.extend(_describe_walls(features))
         return [
-            Breakline(part.coords, kind=kinds[row], priority=priorities[row], name=names[row])
-            for part in parts
-            for row in [part.row]
+            Breakline(coords, kind=kinds[part.row], priority=priorities[part.row], name=name)
+            for part, coords, name in paths
         ]
+
+
+def _find_faces(
+    features: Layer, parts: Sequence[Part], wanted: Wanted, notes: list[str]
+) -> list[tuple[Part, Float64Array, str]]:
+    """Return lines with their names: of walls, by columns of elevations, the top and the foot."""
+    levels = {}
+    for what, columns in _WALL_COLUMNS.items():
+        _require_numbers(features, columns, f"the {what} of a wall")
+        levels[what] = _find_levels(features, wanted, columns, f"the {what} of a wall", notes)
+    names, found = _find_texts(features, "name"), []
+    for part in parts:
+        own = {what: column[part.row] for what, column in levels.items()}
+        if all(level is None for level in own.values()):
+            found.append((part, part.coords, names[part.row]))
+            continue
+        faces = {}
+        for what, level in own.items():
+            if level is None and part.coords.shape[1] == 2:
+                raise ReadError(
+                    f"{features.label(part.row)} has a wall without its {what}: a column "
+                    f"({', '.join(_WALL_COLUMNS[what])}) or elevations of the line are needed."
+                )
+            heights = part.coords[:, 2] if level is None else np.full(len(part.coords), level)
+            faces[what] = np.column_stack([part.coords[:, :2], heights])
+        beyond = float((faces["foot"] - faces["top"])[:, 2].max())
+        if beyond > 0.0:
+            raise ReadError(
+                f"{features.label(part.row)} has a wall whose foot lies above its top, by up to "
+                f"{height(beyond)}."
+            )
+        name = names[part.row] or "wall"
+        found += [(part, faces["top"], name), (part, faces["foot"], f"{name}, foot")]
+    return found
+
+
+def _describe_walls(features: Layer) -> list[str]:
+    """Tell of columns that would make walls, if both are there."""
+    given = [
+        next((name for name in columns if features.find_column(name) is not None), None)
+        for columns in _WALL_COLUMNS.values()
+    ]
+    if None in given:
+        return []
+    return [
+        f"'{features.path.name}': the columns {' and '.join(map(repr, given))} are not used; "
+        "walls=, --walls, makes walls of them."
+    ]
 
 
 def _describe_unused(features: Layer, parts: Sequence[Part]) -> list[str]:
@@ -314,7 +371,7 @@ def read_water(
     with _reading(path, **options, table="polygons") as (features, parts, wanted):
         _refuse_islands(parts, features, "a water polygon")
         rings = [_require_ring(part, features) for part in parts]
-        names, levels = _find_texts(features, "name"), _find_levels(features, wanted, z)
+        names, levels = _find_texts(features, "name"), _find_water_levels(features, wanted, z)
         return [
             Water(ring, _require_level(ring, levels, part.row, features), name=names[part.row])
             for ring, part in zip(rings, parts, strict=True)
@@ -346,17 +403,11 @@ def read_fixed_regions(
     """
     with _reading(path, **options, table="polygons") as (features, parts, wanted):
         _refuse_islands(parts, features, "a fixed region")
-        for name in _WATER_COLUMNS:
-            for row, text in enumerate(_find_texts(features, name)):
-                if text and _parse_finite(text) is None:
-                    raise ReadError(
-                        f"{features.label(row)} has the {name} '{_shorten_text(text)}': a number "
-                        "is needed, or none where the ground stays as it is."
-                    )
+        what = "the level of a fixed region"
+        _require_numbers(features, _WATER_COLUMNS, what)
         told = options.get("notes")
         notes: list[str] = [] if told is None else told
-        what = "the level of a fixed region"
-        levels = _find_levels(features, wanted, None, what, notes)
+        levels = _find_levels(features, wanted, _WATER_COLUMNS, what, notes)
         rings = []
         for part in parts:
             ring, level = _require_ring(part, features), levels[part.row]
@@ -441,37 +492,56 @@ def _parse_finite(text: str) -> float | None:
     return value if np.isfinite(value) else None
 
 
-def _find_levels(
-    features: Layer,
-    wanted: Wanted,
-    z: float | str | None,
-    what: str = "the height of the water",
-    notes: list[str] | None = None,
+def _find_water_levels(
+    features: Layer, wanted: Wanted, z: float | str | None
 ) -> list[float | None]:
-    """Return the height of each feature, None where the corners must tell; columns converted."""
+    """Return the height of each feature, None where the corners must tell."""
     if z is not None and not isinstance(z, str):
         return [float(z)] * len(features.numbers)
     if z is not None and features.find_column(z) is None:
         raise ReadError(
             f"{FILE} has no column '{z}': there is {', '.join(features.columns) or 'none at all'}."
         )
-    names = [z] if z is not None else [n for n in _WATER_COLUMNS if n in features.columns]
-    levels = {name: list(map(_parse_finite, _find_texts(features, name))) for name in names}
-    levels = {name: found for name, found in levels.items() if any(n is not None for n in found)}
+    columns = _WATER_COLUMNS if z is None else (z,)
+    return _find_levels(features, wanted, columns, "the height of the water", [])
+
+
+def _find_levels(
+    features: Layer, wanted: Wanted, columns: Sequence[str], what: str, notes: list[str]
+) -> list[float | None]:
+    """Return the elevation that columns give to each feature, converted; None without one."""
+    given = {
+        name: list(map(_parse_finite, _find_texts(features, name)))
+        for name in columns
+        if features.find_column(name) is not None
+    }
+    levels = {name: found for name, found in given.items() if any(n is not None for n in found)}
     if not levels:
         return [None] * len(features.numbers)
     name, found = next(iter(levels.items()))
     if any(others != found for others in levels.values()):
+        end = "; the option `z` names one" if what.endswith("water") else ""
         raise ReadError(
             f"{FILE} has several columns that may hold {what}, and they differ: "
-            f"{', '.join(levels)}{'; the option `z` names one' if what.endswith('water') else ''}."
+            f"{', '.join(levels)}{end}."
         )
     unit = find_named_unit(name, features)
     if unit is not None:
         wanted = wanted._replace(elevation_unit=settle_unit(wanted.elevation_unit, unit))
         features = features._replace(elevation_unit="")  # is that of the geometries
-    factor = find_elevation_factor(features, wanted, notes=[] if notes is None else notes)
+    factor = find_elevation_factor(features, wanted, notes=notes)
     return [None if level is None else level * factor for level in found]
+
+
+def _require_numbers(features: Layer, columns: Sequence[str], what: str) -> None:
+    """Refuse texts in columns of elevations."""
+    for name in columns:
+        for row, text in enumerate(_find_texts(features, name)):
+            if text and _parse_finite(text) is None:
+                raise ReadError(
+                    f"{features.label(row)} has the {name} '{_shorten_text(text)}': a number is "
+                    f"needed, {what}, or none."
+                )
 
 
 def _require_level(

@@ -43,6 +43,7 @@ def with_lines(
     erase: Sequence[Source] = (),
     water: Sequence[Source] = (),
     water_z: float | str | None = None,
+    walls: bool = False,
     drape: bool = False,
     elevation_unit: UnitLike | None = None,
     check_crs: bool = True,
@@ -57,6 +58,9 @@ def with_lines(
         of polygons stay: they are no part of a hole, are not erased, and lie outside a boundary.
     water_z : float or str, optional
         Height of the water, or the column that holds it.
+    walls : bool
+        Make two breaklines along one line of each that has a second elevation in a column ``top``,
+        ``foot`` or ``bottom``, for the ``walls`` of :func:`tinsmith.triangulate`.
     drape : bool
         Take the heights of breaklines, boundary and holes from the surface, whatever the files
         say.
@@ -109,8 +113,8 @@ def with_lines(
         survey,
         breaklines=[
             *survey.breaklines,
-            *read(read_lines, breaklines, drape=drape),
-            *read(read_lines, soft_breaklines, kind="soft", drape=drape),
+            *read(read_lines, breaklines, drape=drape, walls=walls),
+            *read(read_lines, soft_breaklines, kind="soft", drape=drape, walls=walls),
         ],
         boundary=[*survey.boundary, *chain(*read(read_polygons, boundary, drape=drape))],
         holes=[*survey.holes, *map(_unwrap_ring, read(read_polygons, holes, drape=drape))],

@@ -84,7 +84,8 @@ def test_what_gave_way_and_what_was_left_out():
     survey = ts.Survey(points=points, breaklines=lines, boundary=[ring])
     fields = dict(line_summaries.summarise_lines(survey, ts.triangulate(survey)))
     assert fields["Lines"] == "1 breakline, 1 boundary ring"
-    assert fields["Elevations"] == "2 overruled by lines of higher priority, the most by 3.000"
+    told = "2 overruled by lines of higher priority, the most by 3.000"
+    assert fields["Elevations"].startswith(told)
     assert fields["Left out"].startswith("3 rows: 3 ")
 
 

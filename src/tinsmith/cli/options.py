@@ -115,6 +115,7 @@ class Triangulating(Coding):
             return {}
         return given | {
             "water_z": self.water_z,
+            "walls": self.walls is not None,
             "drape": self.drape,
             "elevation_unit": self.lines_elevation_unit,
         }
@@ -316,7 +317,8 @@ _LINES = under(
     *list_product_options(
         _TRIANGULATE,
         "crossing walls conforming",
-        walls="How far apart breaklines along one line with two elevations are put.",
+        walls="How far apart breaklines along one line with two elevations are put; the second one "
+        "may be in a column of the line: top, foot or bottom.",
     ),
 )
 

@@ -110,4 +110,8 @@ def _describe_overruled(report: Report, survey: Survey) -> str:
     overruled = report.overruled
     most = float(np.abs(overruled.elevations - overruled.vertex_elevations).max())
     number, up = len(overruled.vertices), find_elevation_symbol(survey)
-    return f"{number:,} overruled by lines of higher priority, the most by {most:.3f}{up}"
+    told = f"{number:,} overruled by lines of higher priority, the most by {most:.3f}{up}"
+    lines, counts = np.unique(overruled.lines[overruled.lines >= 0], return_counts=True)
+    if len(lines) and counts.max() > 1:  # more than where two lines cross
+        told += "; --walls keeps both along a wall"
+    return told
