@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from ...base import optional
+from ...base.crs import scale_elevations
 from ...base.results import Features
 from ..drawing import palette
 from ..isolines import contour_labels, count_decimals
@@ -204,10 +205,14 @@ class Map:
         if labeling != "none":
             texts = self._choose_labels(_place_labels(seen, lines, labeling))
         cut = _cut_out(seen, texts)
+        levels = lines.columns["elevation"] * scale_elevations(lines.crs, lines.elevation_unit)
         for flag, kind in ((False, "contour"), (True, "index contour")):
-            parts = cut.choose(is_index == flag)
+            chosen = is_index == flag
+            parts = cut.choose(chosen)
             if parts:
-                canvas.draw_paths(parts, CONTOUR_PENS[flag], f"{kind.replace(' ', '-')}s")
+                heights = levels[cut.sources[chosen[cut.sources]]].tolist()
+                pen = CONTOUR_PENS[flag]
+                canvas.draw_paths(parts, pen, f"{kind.replace(' ', '-')}s", heights)
                 self.drawn.kinds.add(kind)
         self._write(texts, CONTOUR_PENS[True].color, "contour-label")
 

@@ -186,3 +186,19 @@ def test_labels_of_points_say_what_is_asked_for(tmp_path):
         assert np.hypot(at[0] - place[0], at[1] - place[1]) < 1.5
         assert text.dxf.height == pytest.approx(1.4 * 0.5)
     assert "--points" in refuse("plan", SITE, *how, "--points", "names", "-o", svg)
+
+
+def test_contours_of_a_drawing_have_their_heights(tmp_path):
+    drawing = tmp_path / "a.dxf"
+    how = ("--crs", UTM, "--codes", "--scale", 500, "--paper", "A1", "--elevation-unit", "m")
+    out = run("plan", SITE, *how, "-o", drawing)
+    assert out.exit_code == 0, out.output
+    ground = ts.triangulate(ts.lines_from_codes(ts.read(SITE, crs=UTM, elevation_unit="m")))
+    space = ezdxf.readfile(drawing).modelspace()
+    contours = [one for one in space.query("LWPOLYLINE") if "CONTOURS" in one.dxf.layer]
+    assert len(contours) > 10
+    for one in contours:
+        found = ground.interpolate(np.array(one.get_points("xy")))
+        assert np.nanmax(np.abs(found - one.dxf.elevation)) < 1e-3
+    others = [one for one in space.query("LWPOLYLINE") if "CONTOURS" not in one.dxf.layer]
+    assert {one.dxf.elevation for one in others} == {0.0}

@@ -95,8 +95,17 @@ PLAIN: TextStyle = {
 class Drawable(Protocol):
     """What a sheet is drawn on, in millimetres from its lower left corner."""
 
-    def draw_paths(self, parts: Sequence[Float64Array], pen: Pen, name: str) -> None:
-        """Draw polylines; ``name`` is what they are."""
+    def draw_paths(
+        self,
+        parts: Sequence[Float64Array],
+        pen: Pen,
+        name: str,
+        heights: Sequence[float] | None = None,
+    ) -> None:
+        """Draw polylines; ``name`` is what they are.
+
+        ``heights`` are those of each in a drawing that has heights, in its unit.
+        """
 
     def fill(self, rings: Sequence[Float64Array], color: str, name: str) -> None:
         """Fill the area within rings, each closed; what lies in two of them is left out."""
@@ -127,7 +136,13 @@ class Canvas:
         self._order = 1
         self._names: Counter[str] = Counter()
 
-    def draw_paths(self, parts: Sequence[Float64Array], pen: Pen, name: str) -> None:
+    def draw_paths(
+        self,
+        parts: Sequence[Float64Array],
+        pen: Pen,
+        name: str,
+        heights: Sequence[float] | None = None,  # noqa: ARG002 - paper is flat
+    ) -> None:
         """Draw polylines; ``name`` is that of their group in an SVG."""
         if len(parts) == 0:
             return

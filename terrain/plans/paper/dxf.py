@@ -108,14 +108,22 @@ class DxfCanvas:
         self._factor = 1.0 / model.mm_per_unit
         self._layers = model.layers
 
-    def draw_paths(self, parts: Sequence[Float64Array], pen: Pen, name: str) -> None:
-        """Draw polylines in the plane, on the layer of what they are."""
+    def draw_paths(
+        self,
+        parts: Sequence[Float64Array],
+        pen: Pen,
+        name: str,
+        heights: Sequence[float] | None = None,
+    ) -> None:
+        """Draw polylines, each of one height, on the layer of what they are."""
         how = self._style(name, pen.color)
         how["lineweight"] = int(_WEIGHTS[np.abs(_WEIGHTS - 100.0 * pen.width).argmin()])
         if pen.dashes:
             how["linetype"] = self._find_linetype(pen.dashes)
-        for part in parts:
-            self._space.add_lwpolyline(self._place(part).tolist(), dxfattribs=how)
+        levels = [0.0] * len(parts) if heights is None else heights
+        for part, level in zip(parts, levels, strict=True):
+            given = how | {"elevation": float(level)} if level else how
+            self._space.add_lwpolyline(self._place(part).tolist(), dxfattribs=given)
 
     def fill(self, rings: Sequence[Float64Array], color: str, name: str) -> None:
         """Fill the area within rings; white is what a drawing has without."""
