@@ -25,6 +25,9 @@ _KINK = 1e-6
 _HALVINGS = 44
 """Of a length until it is known to roundings."""
 
+_MOST_ROUNDS = 3
+"""Of rays that show where lines end and folds meet: after them there are few, or ever more."""
+
 _MOST_STEPS = 64
 """Until a distance is known to roundings."""
 
@@ -96,13 +99,21 @@ class _Laying:
 
     def lay(self, stations: Float64Array) -> Rays:
         rays = self._match(self._lay_first(self._separate_kinks(stations)))
-        count = len(rays.sides)
+        is_matched, rounds = True, 0
         for _ in range(_HALVINGS):
-            between = self._find_between(rays)
-            if not len(between.sides):
-                break
-            rays = rays.join(between)
-        return self._mirror(rays if len(rays.sides) == count else self._match(rays))
+            added = self._find_between(rays)
+            if is_matched and not len(added.sides):
+                rounds += 1
+                if rounds > _MOST_ROUNDS:
+                    break
+                # Rays to the ends of others show where lines end, and where folds meet.
+                added = self._find_crossings(rays)
+                added = added if len(added.sides) else self._find_corners(rays)
+                if not len(added.sides):
+                    break
+            is_matched = not len(added.sides)
+            rays = self._match(rays) if is_matched else rays.join(added)
+        return self._mirror(rays if is_matched else self._match(rays))
 
     def _mirror(self, rays: Rays) -> Rays:
         """Return rays with those of the other side where that begins at the axis without a part.
@@ -141,17 +152,58 @@ class _Laying:
         first, second = rays.pairs[is_cut[rays.pairs].all(axis=1)].T
         if not len(first):
             return rays.take(first)
-        station, turn = self._mix(rays, first, second, np.full(len(first), 0.5))
-        side, line = rays.sides[first], np.zeros(len(first), np.int64)
-        origins, ways, _ = self._place(side, station, turn, line)
-        limits = self._find_limits(origins, ways, self._find_caps(side, station))
-        ends = origins + limits[:, None] * ways
+        found = self._lay_between(rays, first, second, np.full(len(first), 0.5))
         chord = rays.ends[second] - rays.ends[first]
         length = np.hypot(*chord.T)
-        away = ends - rays.ends[first]
+        away = found.ends - rays.ends[first]
         area = np.abs(chord[:, 0] * away[:, 1] - chord[:, 1] * away[:, 0])
         is_bent = (length > self._tolerance) & (area > length * self._tolerance)
-        return Rays(side, station, turn, origins, ways, limits, ends).take(is_bent)
+        return found.take(is_bent)
+
+    def _find_corners(self, rays: Rays) -> Rays:
+        """Return the rays to places as near to two other stretches, at which folds meet."""
+        is_cut = self._are_cut(rays)
+        first, second = rays.pairs[is_cut[rays.pairs].all(axis=1)].T
+        if not len(first):
+            return rays.take(first)
+        low_foot, high_foot = (self._find_feet(rays.take(own)) for own in (first, second))
+        steps = [np.hypot(*(one[second] - one[first]).T) for one in (rays.origins, rays.ends)]
+        jump = np.hypot(*(high_foot - low_foot).T)
+        is_far = jump > 2.0 * (steps[0] + steps[1]) + self._tolerance
+        first, second = first[is_far], second[is_far]
+        low_foot, high_foot = low_foot[is_far], high_foot[is_far]
+        low, high = np.zeros(len(first)), np.ones(len(first))
+        for _ in range(_HALVINGS if len(first) else 0):
+            middle = 0.5 * (low + high)
+            foot = self._find_feet(self._lay_between(rays, first, second, middle))
+            is_low = np.hypot(*(foot - low_foot).T) < np.hypot(*(foot - high_foot).T)
+            low, high = np.where(is_low, middle, low), np.where(is_low, high, middle)
+            low_foot = np.where(is_low[:, None], foot, low_foot)
+            high_foot = np.where(is_low[:, None], high_foot, foot)
+        is_corner = np.hypot(*(high_foot - low_foot).T) > self._tolerance
+        first, second = first[is_corner], second[is_corner]
+        if not len(first):
+            return rays.take(first)
+        found = self._lay_between(rays, first, second, low[is_corner])
+        return self._leave_known(rays, found)
+
+    def _find_feet(self, rays: Rays) -> Float64Array:
+        """Return the places on the axis that are as near to the ends of rays, (n, 2)."""
+        station = self._axis.stations_of(rays.ends + 10.0 * NEAR * rays.ways)["station"]
+        feet = np.full((len(station), 2), np.nan)
+        known = ~np.isnan(station)
+        feet[known] = self._axis.points_at(station[known])
+        return feet
+
+    def _lay_between(
+        self, rays: Rays, first: Int64Array, second: Int64Array, share: Float64Array
+    ) -> Rays:
+        """Return the rays between two of them each, at shares from the first."""
+        station, turn = self._mix(rays, first, second, share)
+        side = rays.sides[first]
+        origins, ways, _ = self._place(side, station, turn, np.zeros(len(first), np.int64))
+        limits = self._find_limits(origins, ways, self._find_caps(side, station))
+        return Rays(side, station, turn, origins, ways, limits, origins + limits[:, None] * ways)
 
     def _are_cut(self, rays: Rays) -> BoolArray:
         """Whether rays end where another station is as near."""
