@@ -401,3 +401,27 @@ def test_side_slopes_that_begin_at_the_axis_meet_the_ground(seed):
     axis = replace(axis, verticals=[ts.VerticalAlignment([ts.VerticalPoint(*one) for one in tops])])
     made = ts.corridor(ground, axis, ts.Template(left, right), tolerance=0.1)
     assert not any("Along the seam" in note for note in made.report.notes)
+
+
+def test_three_stretches_that_meet_at_one_place_leave_no_gap():
+    """A ring so narrow that bed and side slopes of its corner end where two more stretches do."""
+    ring = np.array([[77.619, 92.416], [71.305, 108.261], [60.813, 67.805], [75.305, 70.47]])
+    axis = ts.Alignment.from_points(np.vstack([ring, ring[:1]]))
+    middle = 0.5 * axis.length
+    rows = [(0.0, 48.8), (middle, 48.7), (axis.length, 48.8)]
+    axis = replace(axis, verticals=[ts.VerticalAlignment([ts.VerticalPoint(*r) for r in rows])])
+
+    def lay_out(wider):
+        left = [ts.Part("lane", 3.06 + wider, -0.01), ts.Part("path", 1.83, 0.0)]
+        side = ts.Side(left, cut_slope=1, fill_slope=1)
+        return ts.Template(
+            side, ts.Side([ts.Part("lane", 2.29 + wider)], cut_slope=1, fill_slope=2)
+        )
+
+    template = {0.0: lay_out(0.0), middle: lay_out(1.5), axis.length: lay_out(0.0)}
+    corners = np.array([[0.0, 0], [160, 0], [160, 160], [0, 160]])
+    ground = ts.triangulate(np.column_stack([corners, [50, 51, 50.5, 49.5]]))
+    made = ts.corridor(ground, axis, template, tolerance=0.01)
+    assert ts.check(made).ok
+    assert made.area == pytest.approx(ground.area)
+    assert any("cut off where both are as near" in note for note in made.report.notes)
