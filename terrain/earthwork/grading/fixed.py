@@ -252,6 +252,7 @@ def _make_polygon(name: str, ring: Float64Array, area: Any) -> Any:
     import shapely
 
     polygon = shapely.Polygon(ring[:, :2])
+    polygon = shapely.remove_repeated_points(polygon, measure_tolerance(ring))
     if not polygon.is_valid or not polygon.area > 0:
         raise LinesError(f"Invalid fixed region {name}: {shapely.is_valid_reason(polygon)}.")
     require_on_ground(area, polygon, f"Fixed region {name} lies off")
@@ -400,8 +401,12 @@ def _require_even(region: Fixed) -> None:
     """Refuse slopes of a region with notches whose edge is not level."""
     if region.is_level:
         return
+    import shapely
+
     polygon = region.polygon
-    if float(polygon.convex_hull.area - polygon.area) > 1e-9 * float(polygon.area):
+    corners = shapely.get_coordinates(polygon)
+    rounding = measure_tolerance(corners) * float(polygon.length)
+    if float(polygon.convex_hull.area - polygon.area) > 1e-9 * float(polygon.area) + rounding:
         raise LinesError(
             f"{region.title} has notches, in which slopes from its uneven edge do not "
             "meet: divide it into convex parts, or give it a level."

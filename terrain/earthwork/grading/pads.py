@@ -13,6 +13,7 @@ from ....base.sentences import height
 from ....tin import TIN
 from ....tin.constraints import gather_rings_of_regions
 from .distances import measure_distances
+from .seams import measure_tolerance
 
 if TYPE_CHECKING:
     from ....base.arrays import Float64Array
@@ -96,6 +97,7 @@ def read_polygon(pad: Any) -> tuple[Any, Float64Array]:
         raise OptionError("pad", "several rings", "one ring, without holes")
     ring = regions[0][0]
     polygon = shapely.Polygon(ring[:, :2])
+    polygon = shapely.remove_repeated_points(polygon, measure_tolerance(ring))
     if not polygon.is_valid or not polygon.area > 0:
         raise LinesError(f"Invalid pad: {shapely.is_valid_reason(polygon)}.")
     return shapely.orient_polygons(polygon), ring

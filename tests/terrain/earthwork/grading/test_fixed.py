@@ -208,3 +208,34 @@ def test_regions_in_another_crs_and_of_columns_that_differ_are_refused():
         ts.grade(ground, PAD, 4.0, fixed=features(elevation=[4.0], z=[5.0]), **HOW)
     with pytest.raises(ts.OptionError, match="a level, or none"):
         ts.grade(ground, PAD, 4.0, fixed=features(elevation=["high"]), **HOW)
+
+
+@pytest.mark.parametrize("level", [None, 4.9])
+@pytest.mark.parametrize("origin", [(0.0, 0.0), (500_000.0, 4_000_000.0)])
+@pytest.mark.parametrize(
+    "ring",
+    [
+        [[80, 50], [95, 50], [95, 60], [80, 60]],  # shares an edge with the pad
+        [[80, 80], [90, 80], [90, 90], [80, 90]],  # a corner
+        [[30, 58], [90, 58], [90, 62], [30, 62]],  # across it
+        [[50, 50], [60, 50.001], [70, 50]],
+        [[50, 50], [50.001, 50], [50, 50.001]],
+        [[50, 60], [50, 60], [60, 60], [60, 50], [55, 50], [50, 50], [50, 60]],
+    ],
+)
+def test_odd_regions_are_held_too(ring, origin, level):
+    ground, ring = hills(3, origin), np.add(ring, origin)
+    given = ring if level is None else at(ring, level)
+    found = ts.balance(ground, np.add(PAD, origin), fixed=[given], **HOW)
+    assert ts.check(found.tin).ok
+    table = ts.volume(ground, found.tin)
+    assert abs(float(table["cut"][0] - table["fill"][0])) < 1e-3
+    middle = ring[:-1].mean(axis=0)[None] if len(ring) > 4 else ring.mean(axis=0)[None]
+    kept = float(ground.interpolate(middle)[0]) if level is None else level
+    assert float(found.tin.interpolate(middle)[0]) == pytest.approx(kept, abs=1e-5)
+
+
+def test_a_pad_with_a_corner_twice():
+    once = ts.grade(plane(), PAD, 4.0, **HOW)
+    twice = ts.grade(plane(), [PAD[0], *PAD, PAD[0]], 4.0, **HOW)
+    assert (once.points == twice.points).all()
