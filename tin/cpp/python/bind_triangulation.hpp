@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-#include "../mesh/triangulated_mesh.hpp"
+#include "../mesh/mesh_arrays.hpp"
 #include "../triangulation.hpp"
 #include "bind_mesh.hpp"
 #include "conversion.hpp"
