@@ -90,4 +90,6 @@ from .sight import viewshed as viewshed
 from .sight import visible_vertices as visible_vertices
 from .simplification import simplify as simplify
 from .viewer import Preview as Preview
+from .viewer import TilesetPreview as TilesetPreview
 from .viewer import preview as preview
+from .viewer import preview_tileset as preview_tileset

@@ -22,7 +22,7 @@ from ..earthwork import difference
 from .alignment import Aligned, align
 from .options import PreviewKeywords, PreviewOptions
 from .ortho import Ortho, read_ortho
-from .page.content import Start, describe_page, find_labels, make_document
+from .page import Start, describe_page, find_labels, make_document
 from .picture import PICTURE_SUFFIXES, write_picture
 from .relief import choose_exaggeration, measure_relief
 from .scene import describe_far_off

@@ -463,6 +463,10 @@ def test_view_shows_each_file_of_a_tin_and_points_apart_if_asked(tmp_path, drawn
     assert isinstance(drawn[2][0], ts.TIN)
     result = run("view", tables[0], "--compare", "-o", out, code=2)
     assert "--compare needs two files or more, and there is one." in result.stderr
+    missing = [tmp_path / "none.csv"] * 2  # refused before anything is read
+    for output in ([], ["-o", tmp_path / "a.png"]):
+        result = run("view", *missing, "--compare", *output, code=2)
+        assert "--compare shows several surfaces, which only a page can" in result.stderr
     result = run("view", meshes[0], tables[0], "-o", out, code=1)
     assert "holds a TIN, whose triangles cannot be joined" in result.stderr
 

@@ -4,13 +4,17 @@ from __future__ import annotations
 
 import atexit
 import base64
+import contextlib
+import functools
 import hashlib
 import json
 import re
 import shutil
+import threading
 import zlib
 from contextlib import contextmanager
 from functools import cache
+from http.server import SimpleHTTPRequestHandler, ThreadingHTTPServer
 
 import numpy as np
 import pytest
@@ -39,6 +43,81 @@ def open_page(path, *, webgl=True, ready="window.terrain", **context_options):
     finally:
         context.close()
     assert [line for line in said if webgl or "WebGL" not in line] == []
+
+
+@contextmanager
+def open_served(folder, name, *, answers=None, ready="window.terrain", **context_options):
+    """Open a page from a server on this machine; nothing else may be asked for.
+
+    ``answers`` are other answers than the files: paths with a status, bytes, or an event that is
+    waited for. The page has the paths that were asked for as ``page.asked``. Where it is expected
+    to fail, ``ready`` is something else.
+    """
+    said = []
+    with _serve_folder(folder, answers or {}) as (address, asked):
+        options = {"viewport": {"width": 1200, "height": 800}, **context_options}
+        context = _launch_browser(True).new_context(**options)
+        try:
+            context.set_default_timeout(_PATIENCE)
+            page = context.new_page()
+            page.on("pageerror", lambda error: said.append(str(error)))
+            page.on(
+                "request",
+                lambda one: None if one.url.startswith(address) else _note_request(one.url, said),
+            )
+            page.asked = asked
+            page.goto(address + name)
+            page.evaluate(f"{ready}.then(() => true)")
+            yield page
+        finally:
+            context.close()
+    assert said == []
+
+
+def wait_until(page, condition):
+    """Wait until something holds; what Playwright has for it a page's policy forbids."""
+    page.evaluate(
+        f"""new Promise((done) => {{
+      const look = async () => ((await ({condition})) ? done() : setTimeout(look, 20));
+      void look(); }})"""
+    )
+
+
+@contextmanager
+def _serve_folder(folder, answers):
+    asked = []
+
+    class Handler(SimpleHTTPRequestHandler):
+        def do_GET(self):
+            path = self.path.lstrip("/")
+            asked.append(path)
+            answer = answers.get(path)
+            if isinstance(answer, threading.Event):
+                answer.wait(60)
+            if isinstance(answer, int):
+                self.send_error(answer)
+            elif isinstance(answer, bytes):
+                self.send_response(200)
+                self.send_header("Content-Length", str(len(answer)))
+                self.end_headers()
+                self.wfile.write(answer)
+            else:
+                with contextlib.suppress(BrokenPipeError, ConnectionResetError):
+                    super().do_GET()
+
+        def log_message(self, *_):
+            pass
+
+    handler = functools.partial(Handler, directory=str(folder))
+    server = ThreadingHTTPServer(("127.0.0.1", 0), handler)
+    server.daemon_threads = True
+    thread = threading.Thread(target=server.serve_forever, args=(0.05,), daemon=True)
+    thread.start()
+    try:
+        yield f"http://127.0.0.1:{server.server_address[1]}/", asked
+    finally:
+        server.shutdown()
+        server.server_close()
 
 
 @cache

@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from ....base.georeference import Ground
     from ....base.policies import Tint
     from ....tin import TIN, Survey
+    from ..options import PreviewOptions
     from ..ortho import Ortho
 
 _STEPS = 2**22
@@ -122,6 +123,7 @@ def describe_page(
             "horizontal": ground.unit.symbol,
             "elevation": "" if last.elevation_unit is None else last.elevation_unit.symbol,
         },
+        "elevationName": "Elevation",
         "axes": [[label.name.capitalize(), label.sign] for label in label_axes(last.crs)],
         "geographic": last.crs is not None and last.crs.is_geographic,
         "ellipsoid": find_ellipsoid(last.crs),
@@ -138,6 +140,29 @@ def describe_page(
         "colors": palette.PAGE_COLORS,
         "ortho": None if ortho is None else _describe_ortho(ortho, steps),
         "surfaces": described,
+        "tileset": None,
+    }
+
+
+def describe_tileset(address: str, look: PreviewOptions) -> dict[str, Any]:
+    """Return what a page of a tileset needs: the rest it finds when it reads that.
+
+    ``address`` is that of its JSON, relative to the page.
+    """
+    return {
+        "title": look.title,
+        "subtitle": "",
+        "notes": "",
+        "exaggeration": look.exaggeration or 0.0,
+        "elevations": look.elevations,
+        "tint": look.tint,
+        "interval": look.contours or 0.0,
+        "basis": "",
+        "ramps": _make_ramps(),
+        "colors": palette.PAGE_COLORS,
+        "ortho": None,
+        "surfaces": [],
+        "tileset": {"address": address},
     }
 
 
@@ -247,7 +272,7 @@ def make_document(content: Mapping[str, Any]) -> str:
 
     Data cannot end its own element or begin another: "<" is written as an escape of JSON, and the
     words of the title as character references. A content security policy in the page forbids every
-    request.
+    request, but those of a tileset to the server that gave the page.
     """
     folder = files(__package__)
     text = json.dumps(content, ensure_ascii=True, separators=(",", ":"), allow_nan=False)
@@ -255,6 +280,7 @@ def make_document(content: Mapping[str, Any]) -> str:
         "title": escape(content["title"]),
         "subtitle": escape(content["subtitle"]),
         "notes": escape(content["notes"]),
+        "requests": "" if content["tileset"] is None else "; connect-src 'self'",
         "colors": _write_colors(),
         "style": folder.joinpath("style.css").read_text("utf-8"),
         "payload": text.replace("<", "\\u003c"),

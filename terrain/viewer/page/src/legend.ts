@@ -12,6 +12,7 @@ const TITLES: Record<Tint, string> = {
   difference: "Cut and fill",
   plain: "Plain",
   ortho: "Ortho",
+  given: "Colours of the file",
 };
 const STEEPEST = 60;
 
@@ -29,7 +30,8 @@ export class Legend {
     isDraped: boolean,
   ) {
     const compared = scene.models.some((model) => model.surface.difference !== null);
-    const absent: Partial<Record<Tint, boolean>> = { difference: !compared, ortho: !isDraped };
+    const colored = scene.models.some((model) => model.hasColors);
+    const absent: Partial<Record<Tint, boolean>> = { difference: !compared, ortho: !isDraped, given: !colored };
     for (const tint of TINTS) if (!absent[tint]) this.choice.add(new Option(TITLES[tint], tint));
     this.choice.addEventListener("change", () => {
       this.setTint(this.choice.value as Tint);
@@ -64,15 +66,15 @@ export class Legend {
 
   private showLegend(): void {
     const shown = this.tint === "ortho" && !this.payload.ortho!.isWhole ? "elevation" : this.tint;
-    this.box.hidden = shown === "plain" || shown === "ortho";
-    if (shown === "plain" || shown === "ortho") return;
+    this.box.hidden = shown === "plain" || shown === "ortho" || shown === "given";
+    if (shown === "plain" || shown === "ortho" || shown === "given") return;
     const unit = this.payload.units.elevation;
     const [low, high] = this.range(shown);
     const shift = this.payload.origin[2];
     const digits = Math.min(Math.max(0, 2 - Math.floor(Math.log10(high - low))), 20);
     const elevation = (z: number): string => fix(z + shift, digits);
-    const ends: Record<Exclude<Tint, "plain" | "ortho">, [string, string[]]> = {
-      elevation: [joinUnit("Elevation", unit), [low, (low + high) / 2, high].map(elevation)],
+    const ends: Record<Exclude<Tint, "plain" | "ortho" | "given">, [string, string[]]> = {
+      elevation: [joinUnit(this.payload.elevationName, unit), [low, (low + high) / 2, high].map(elevation)],
       slope: ["Slope, degrees", ["0", "15", "30", "45", "60+"]],
       aspect: ["Aspect, facing", ["N", "E", "S", "W", "N"]],
       difference: [joinUnit("Cut (below 0) and fill", unit), [low, 0, high].map((v) => fix(v, digits))],

@@ -8,11 +8,13 @@ import { Legend } from "./legend";
 import { Link } from "./link";
 import { decodeOrtho } from "./ortho";
 import { readPayload, type Payload } from "./payload";
-import { Model, TerrainScene } from "./scene";
+import { SurfaceModel, TerrainScene } from "./scene";
 import { Settings } from "./settings";
 import { drawStill } from "./still";
 import { Surface } from "./surface";
 import { Theme } from "./theme";
+import type { TilesetModel } from "./tiles/model";
+import { openTileset, showTileset } from "./tiles/opening";
 import { Tool } from "./measure/tool";
 
 const START = { azimuth: 195, tilt: 35 };
@@ -33,6 +35,7 @@ class Page {
   readonly comparison: Comparison;
   readonly link: Link;
 
+  tileset: TilesetModel | null = null;
   private telling = 0;
 
   constructor(
@@ -144,11 +147,11 @@ class Page {
 }
 
 /** Describe the surfaces to those who do not see them. */
-function describeExtent({ units, origin }: Payload, scene: TerrainScene): void {
+function describeExtent({ units, origin, elevationName }: Payload, scene: TerrainScene): void {
   const [low, high] = scene.elevations.map((z) => Number((z + origin[2]).toFixed(2)));
   const [width, height] = scene.extent.map((one) => Number(one.toPrecision(4)));
   find<HTMLElement>("extent").textContent =
-    `Elevations from ${low} to ${high} ${units.elevation}; ` +
+    `${elevationName}s from ${low} to ${high} ${units.elevation}; ` +
     `${width} ${units.horizontal} from west to east, ${height} ${units.horizontal} from south to north.`;
 }
 
@@ -168,9 +171,30 @@ function showStill(
     document.getElementById(id)?.setAttribute("style", "display: none");
 }
 
+/** Show a tileset, streamed by level. */
+async function openTiles(payload: Payload): Promise<Page | null> {
+  const words = find<HTMLElement>("wait");
+  let scene: TerrainScene;
+  try {
+    scene = new TerrainScene(find<HTMLCanvasElement>("view"), payload);
+  } catch {
+    words.textContent = "This browser has no WebGL, without which a tileset cannot be shown.";
+    for (const id of ["side", "north", "bar", "readout"]) find<HTMLElement>(id).style.display = "none";
+    return null;
+  }
+  const model = await openTileset(payload);
+  showTileset(model, scene);
+  const page = new Page(payload, scene, false);
+  page.tileset = model;
+  model.changed = () => page.tool.renew();
+  words.remove();
+  return page;
+}
+
 async function open(): Promise<Page | null> {
   const words = find<HTMLElement>("wait");
   const payload = readPayload("terrain");
+  if (payload.tileset !== null) return openTiles(payload);
   const surfaces: Surface[] = [];
   const ground = makeGround(payload);
   for (const data of payload.surfaces)
@@ -183,9 +207,10 @@ async function open(): Promise<Page | null> {
     showStill(payload, surfaces[surfaces.length - 1], picture, words);
     return null;
   }
-  for (const surface of surfaces) {
-    const model = new Model(surface, payload);
-    await model.addLayers();
+  for (const [k, data] of payload.surfaces.entries()) {
+    const surface = surfaces[k];
+    const model = new SurfaceModel(surface, payload, data.step);
+    await model.addLayers(data);
     scene.add(model);
   }
   if (picture !== null) scene.drape(picture);

@@ -4,7 +4,7 @@ import { Color, DataTexture, DoubleSide, LinearFilter, RGBAFormat, ShaderMateria
 
 import type { Colors } from "./payload";
 
-export const TINTS = ["elevation", "slope", "aspect", "difference", "plain", "ortho"] as const;
+export const TINTS = ["elevation", "slope", "aspect", "difference", "plain", "ortho", "given"] as const;
 export type Tint = (typeof TINTS)[number];
 
 /** Light from the northwest at 45 degrees, as on printed maps. */
@@ -12,15 +12,18 @@ const LIGHT = new Vector3(-1, 1, Math.SQRT2).normalize();
 
 const VERTEX = /* glsl */ `
 attribute float change;
+attribute vec3 given;
 uniform float elevationScale;
 varying vec3 ground;
 varying vec3 lit;
 varying float changed;
+varying vec3 painted;
 #include <common>
 #include <logdepthbuf_pars_vertex>
 void main() {
   ground = vec3(position.xy, position.z * elevationScale);
   changed = change;
+  painted = given;
   lit = normal;
   gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0);
   #include <logdepthbuf_vertex>
@@ -43,6 +46,7 @@ uniform vec3 down;
 varying vec3 ground;
 varying vec3 lit;
 varying float changed;
+varying vec3 painted;
 #include <common>
 #include <logdepthbuf_pars_fragment>
 
@@ -64,7 +68,7 @@ void main() {
   else if (tint == 2) place = fract(degrees(atan(face.x, face.y)) / 360.0);
   else if (tint == 3) place = 0.5 + 0.5 * changed / range.y;
   else place = 0.0;
-  vec3 color = tint == 4 ? plain : texture2D(ramp, vec2(clamp(place, 0.0, 1.0), 0.5)).rgb;
+  vec3 color = tint == 4 ? plain : tint == 6 ? painted : texture2D(ramp, vec2(clamp(place, 0.0, 1.0), 0.5)).rgb;
   float shade = max(dot(normalize(lit), light), 0.0) / light.z;
   float brightness = mix(1.0, mix(0.42, 1.0, clamp(shade, 0.0, 1.35)), shading);
   vec2 at = vec2(dot(across, vec3(ground.xy, 1.0)), dot(down, vec3(ground.xy, 1.0)));
@@ -97,7 +101,7 @@ export function makeRamp(colors: string[]): DataTexture {
   return texture;
 }
 
-export function makeTerrainMaterial(elevationScale: number, colors: Colors): ShaderMaterial {
+export function makeTerrainMaterial(elevationScale: number, colors: Colors, base: number): ShaderMaterial {
   return new ShaderMaterial({
     vertexShader: VERTEX,
     fragmentShader: FRAGMENT,
@@ -111,7 +115,7 @@ export function makeTerrainMaterial(elevationScale: number, colors: Colors): Sha
       range: { value: [0, 1] },
       elevationScale: { value: elevationScale },
       interval: { value: 0 },
-      base: { value: 0 },
+      base: { value: base },
       light: { value: LIGHT },
       plain: { value: new Color(colors.plain) },
       ink: { value: new Color(colors.contours) },

@@ -77,12 +77,22 @@ export interface Colors {
   measured: string;
 }
 
+/** A tileset beside the page. */
+export interface TilesetData {
+  /** Address of its JSON from the page. */
+  address: string;
+}
+
 export interface Payload {
   colors: Colors;
   title: string;
   subtitle: string;
+  /** What is to be told of the data. */
+  notes: string;
   crs: string;
   units: UnitNames;
+  /** What elevations are called. */
+  elevationName: string;
   /** Easting, northing and elevation of the numbers 0, 0, 0 of all surfaces. */
   origin: [number, number, number];
   /** Units on the ground in one unit of easting and of northing. */
@@ -110,6 +120,8 @@ export interface Payload {
   basis: string;
   ortho: OrthoData | null;
   surfaces: SurfaceData[];
+  /** In place of surfaces: then what is told of places is found when it is opened. */
+  tileset: TilesetData | null;
 }
 
 /** Read the payload out of the page. */

@@ -26,8 +26,8 @@ import { LineSegmentsGeometry } from "three/addons/lines/LineSegmentsGeometry.js
 import { makeRamp, makeTerrainMaterial, type Tint, TINTS } from "./material";
 import { Pace, simplify } from "./detail";
 import { makeOrthoTexture } from "./ortho";
-import type { LineLayer, Payload } from "./payload";
-import type { Hit, Surface, Vector } from "./surface";
+import type { LineLayer, Payload, SurfaceData } from "./payload";
+import type { Hit, Surface, Terrain, Vector } from "./surface";
 import { Network } from "./measure/network";
 import { type Lines, unpackLines, unpackRows } from "./unpacking";
 
@@ -44,34 +44,69 @@ export interface Standpoint {
   away: number;
 }
 
-/** One surface with all that is drawn with it. */
-export class Model {
-  readonly group = new Group();
+type Ramps = Record<string, ReturnType<typeof makeRamp>>;
+
+/** What is shown as one: a surface, or the tiles of one. */
+export interface Model {
+  readonly surface: Terrain;
+  readonly group: Group;
   readonly material: ShaderMaterial;
-  readonly layers = new Map<string, LineSegments2>();
+  readonly layers: Map<string, LineSegments2>;
   /** Breaklines, boundaries and water that are drawn, to measure along them. */
   readonly network: Network;
-  labels: { places: Float64Array; texts: string[]; marks: Points } | null = null;
+  readonly labels: { places: Float64Array; texts: string[]; marks: Points } | null;
+  /** Whether its file gives colours. */
+  readonly hasColors: boolean;
+  /** Draw fewer triangles, or all of them. */
+  setCoarse(isCoarse: boolean): void;
+  showEdges(shown: boolean): void;
+  paint(tint: Tint, ramps: Ramps, range: [number, number]): void;
+  /** Say how exact a place is, or what is measured between places; "" if that goes without saying. */
+  describeExactness(path: Hit[]): string;
+}
+
+/** One surface with all that is drawn with it. */
+export class SurfaceModel implements Model {
+  readonly group = new Group();
+  readonly layers = new Map<string, LineSegments2>();
+  readonly network: Network;
+  readonly hasColors = false;
+  labels: Model["labels"] = null;
   private edges: LineSegments | null = null;
   private readonly geometry: BufferGeometry;
   private readonly fine: BufferAttribute;
   private coarse: BufferAttribute | undefined;
 
+  /** Where it is drawn from, so that 32 bits are enough. */
+  private readonly middle: [number, number];
+
+  /** Tiles of one surface have one material, and are drawn from places of their own. */
   constructor(
     readonly surface: Surface,
     readonly payload: Payload,
+    private readonly steps: [number, number],
+    readonly material = makeTerrainMaterial(payload.elevationScale, payload.colors, payload.origin[2]),
+    middle: [number, number] = [0, 0],
+    more: { colors: Float32Array | null; skirt: number } = { colors: null, skirt: 0 },
   ) {
-    this.material = makeTerrainMaterial(payload.elevationScale, payload.colors);
-    this.material.uniforms.base.value = payload.origin[2];
-    this.geometry = makeGeometry(surface);
+    this.middle = middle;
+    this.geometry = makeGeometry(surface, middle);
+    if (more.colors !== null) this.geometry.setAttribute("given", new BufferAttribute(more.colors, 3));
+    if (more.skirt > 0) addSkirt(this.geometry, more.skirt);
     this.fine = this.geometry.index!;
     const mesh = new Mesh(this.geometry, this.material);
     mesh.frustumCulled = false;
     this.group.add(mesh);
-    this.network = new Network(surface.data.step);
+    this.group.position.set(...middle, 0);
+    this.network = new Network(steps);
   }
 
-  /** Draw fewer triangles, or all of them. */
+  /** Give back what the graphics card holds. */
+  dispose(): void {
+    this.geometry.dispose();
+    this.edges?.geometry.dispose();
+  }
+
   setCoarse(isCoarse: boolean): void {
     if (isCoarse && this.coarse === undefined) {
       const kept = simplify(this.surface);
@@ -80,16 +115,15 @@ export class Model {
     this.geometry.setIndex(isCoarse ? this.coarse! : this.fine);
   }
 
-  async addLayers(): Promise<void> {
-    const [across, up] = this.surface.data.step;
-    for (const layer of this.surface.data.lines) {
+  async addLayers({ lines: layers, labels }: SurfaceData): Promise<void> {
+    const [across, up] = this.steps;
+    for (const layer of layers) {
       const lines = await unpackLines(layer.lines);
       const object = drawLines(layer, lines, across, up);
       this.network.add(layer.kind, lines);
       this.layers.set(layer.kind, object);
       this.group.add(object);
     }
-    const labels = this.surface.data.labels;
     if (labels === null) return;
     const numbers = await unpackRows(labels.places);
     const places = Float64Array.from(numbers, (n, i) => n * (i % 3 === 2 ? up : across));
@@ -104,19 +138,26 @@ export class Model {
 
   showEdges(shown: boolean): void {
     if (shown && this.edges === null) {
-      this.edges = drawEdges(this.surface, this.payload.colors.objects);
+      this.edges = drawEdges(this.surface, this.middle, this.payload.colors.objects);
       this.group.add(this.edges);
     }
     if (this.edges !== null) this.edges.visible = shown;
   }
 
-  paint(tint: Tint, ramps: Record<string, ReturnType<typeof makeRamp>>, range: [number, number]): void {
-    const { uniforms } = this.material;
+  paint(tint: Tint, ramps: Ramps, range: [number, number]): void {
     const isPlain = tint === "difference" && this.surface.difference === null;
-    uniforms.tint.value = TINTS.indexOf(isPlain ? "plain" : tint);
-    uniforms.ramp.value = tint === "plain" ? null : ramps[tint === "ortho" ? "elevation" : tint];
-    uniforms.range.value = range;
+    paintMaterial(this.material, isPlain ? "plain" : tint, ramps, range);
   }
+
+  describeExactness(): string {
+    return "";
+  }
+}
+
+export function paintMaterial({ uniforms }: ShaderMaterial, tint: Tint, ramps: Ramps, range: [number, number]): void {
+  uniforms.tint.value = TINTS.indexOf(tint);
+  uniforms.ramp.value = tint === "plain" ? null : (ramps[tint] ?? ramps.elevation);
+  uniforms.range.value = range;
 }
 
 /** Two surfaces beside each other: the border, a share of the width from the left, and both. */
@@ -133,8 +174,9 @@ export class TerrainScene {
   readonly renderer: WebGLRenderer;
   readonly controls: OrbitControls;
   readonly models: Model[] = [];
-  readonly ramps: Record<string, ReturnType<typeof makeRamp>> = {};
-  /** Called after each picture. */
+  readonly ramps: Ramps = {};
+  /** Called before each picture, once the camera stands, and after it. */
+  readonly prepared: (() => void)[] = [];
   readonly drawn: (() => void)[] = [];
   split: Split | null = null;
   readonly pace = new Pace(() => this.setDetail());
@@ -380,6 +422,11 @@ export class TerrainScene {
     return height / this.canvas.clientHeight;
   }
 
+  /** Return pixels of the page of what is as high as it is away, ahead of the camera. */
+  get pixelsPerSlope(): number {
+    return this.canvas.clientHeight / (2 * Math.tan(((FIELD_OF_VIEW / 2) * Math.PI) / 180));
+  }
+
   /** Return what lies under a pixel of the page, of the surfaces that are shown. */
   pick(px: number, py: number): { model: Model; hit: Hit } | null {
     const size = [this.canvas.clientWidth, this.canvas.clientHeight];
@@ -445,6 +492,8 @@ export class TerrainScene {
 
   draw(): void {
     this.fitDepths();
+    this.camera.updateMatrixWorld();
+    for (const act of this.prepared) act();
     if (this.split === null) this.renderer.render(this.scene, this.camera);
     else this.drawBoth(this.split);
     for (const act of this.drawn) act();
@@ -483,14 +532,53 @@ export class TerrainScene {
   }
 }
 
-function makeGeometry(surface: Surface): BufferGeometry {
+/** Return places in 32 bits from a middle. */
+function shorten({ positions }: Surface, [x, y]: [number, number]): Float32Array {
+  return Float32Array.from(positions, (value, i) => (i % 3 === 2 ? value : value - (i % 3 === 0 ? x : y)));
+}
+
+function makeGeometry(surface: Surface, middle: [number, number]): BufferGeometry {
   const geometry = new BufferGeometry();
-  geometry.setAttribute("position", new BufferAttribute(new Float32Array(surface.positions), 3));
+  geometry.setAttribute("position", new BufferAttribute(shorten(surface, middle), 3));
   geometry.setIndex(new BufferAttribute(surface.triangles, 1));
   const change = surface.difference ?? new Float32Array(surface.positions.length / 3);
   geometry.setAttribute("change", new BufferAttribute(change, 1));
   geometry.setAttribute("normal", new BufferAttribute(averageNormals(surface), 3));
   return geometry;
+}
+
+/** Hang an apron on the rim, so that no gap is seen between tiles of different levels. */
+function addSkirt(geometry: BufferGeometry, depth: number): void {
+  const index = geometry.index!.array as Uint32Array;
+  const count = geometry.getAttribute("position").count;
+  const open = new Map<number, [number, number]>();
+  for (let k = 0; k < index.length; k += 1) {
+    const [a, b] = [index[k], index[k % 3 === 2 ? k - 2 : k + 1]];
+    const key = Math.min(a, b) * count + Math.max(a, b);
+    if (!open.delete(key)) open.set(key, [a, b]);
+  }
+  const below = new Map<number, number>();
+  const hang = (vertex: number): number => {
+    const found = below.get(vertex) ?? count + below.size;
+    below.set(vertex, found);
+    return found;
+  };
+  const more: number[] = [];
+  for (const [a, b] of open.values()) more.push(a, hang(a), b, b, hang(a), hang(b));
+  for (const name of Object.keys(geometry.attributes)) {
+    const { array, itemSize } = geometry.getAttribute(name);
+    const longer = new Float32Array(itemSize * (count + below.size));
+    longer.set(array);
+    for (const [vertex, at] of below) {
+      for (let k = 0; k < itemSize; k += 1) longer[itemSize * at + k] = array[itemSize * vertex + k];
+      if (name === "position") longer[itemSize * at + 2] -= depth;
+    }
+    geometry.setAttribute(name, new BufferAttribute(longer, itemSize));
+  }
+  const joined = new Uint32Array(index.length + more.length);
+  joined.set(index);
+  joined.set(more, index.length);
+  geometry.setIndex(new BufferAttribute(joined, 1));
 }
 
 /** Return the normals of the true surface at the vertices, each triangle counted by its area seen
@@ -518,7 +606,7 @@ function averageNormals(surface: Surface): Float32Array {
 }
 
 /** Draw each edge once: of the two triangles at it, the one in which its ends ascend. */
-function drawEdges(surface: Surface, color: string): LineSegments {
+function drawEdges(surface: Surface, middle: [number, number], color: string): LineSegments {
   const { triangles } = surface;
   const seen = new Set<number>();
   const count = surface.positions.length / 3;
@@ -532,7 +620,7 @@ function drawEdges(surface: Surface, color: string): LineSegments {
     ends.push(a, b);
   }
   const geometry = new BufferGeometry();
-  geometry.setAttribute("position", new BufferAttribute(new Float32Array(surface.positions), 3));
+  geometry.setAttribute("position", new BufferAttribute(shorten(surface, middle), 3));
   geometry.setIndex(new BufferAttribute(new Uint32Array(ends), 1));
   const material = new LineBasicMaterial({ color, transparent: true, opacity: 0.35 });
   const object = new LineSegments(geometry, material);

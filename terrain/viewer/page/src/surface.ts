@@ -15,7 +15,7 @@ export interface Hit {
 }
 
 /** A stretch of a profile inside one triangle: distances along the line and elevations. */
-interface Stretch {
+export interface Stretch {
   from: number;
   to: number;
   zFrom: number;
@@ -24,14 +24,20 @@ interface Stretch {
 
 export type ProfilePoint = [distance: number, elevation: number];
 
+/** What a surface is called, and which lines are drawn with it. */
+export type SurfaceWords = Pick<SurfaceData, "name" | "lines">;
+
+/** What can be measured on: one surface, or the tiles of one. */
+export type Terrain = Pick<Surface, "low" | "high" | "difference" | "pick" | "profile" | "slope" | "differenceAt"> & {
+  readonly data: SurfaceWords;
+};
+
 const TRIANGLES_PER_CELL = 2;
 
 /** Share of a triangle by which a ray may pass beside it: no gap opens where rounding parts two. */
 const SEAM = 1e-9;
 
 export class Surface {
-  /** x, y, z of each vertex from the origin, in units of the coordinates. */
-  readonly positions: Float64Array;
   readonly low: Vector = [Infinity, Infinity, Infinity];
   readonly high: Vector = [-Infinity, -Infinity, -Infinity];
 
@@ -39,13 +45,15 @@ export class Surface {
   private rows = 1;
   private cell = 1;
   private starts = new Int32Array(2);
-  private members = new Int32Array(0);
-  private seen: Int32Array;
+  /** Triangles by cells; null until they are needed. */
+  private members: Int32Array | null = null;
+  private seen = new Int32Array(0);
   private round = 0;
 
-  private constructor(
-    readonly data: SurfaceData,
-    vertices: Int32Array,
+  constructor(
+    readonly data: SurfaceWords,
+    /** x, y, z of each vertex from the origin, in units of the coordinates. */
+    readonly positions: Float64Array,
     readonly triangles: Uint32Array,
     /** Cut and fill at the vertices. */
     readonly difference: Float32Array | null,
@@ -53,16 +61,10 @@ export class Surface {
     readonly elevationScale: number,
     readonly ground: (y: number) => Factors,
   ) {
-    const [across, up] = data.step;
-    this.positions = new Float64Array(vertices.length);
-    for (let i = 0; i < vertices.length; i += 1) {
-      const value = vertices[i] * (i % 3 === 2 ? up : across);
-      this.positions[i] = value;
-      this.low[i % 3] = Math.min(this.low[i % 3], value);
-      this.high[i % 3] = Math.max(this.high[i % 3], value);
+    for (let i = 0; i < positions.length; i += 1) {
+      this.low[i % 3] = Math.min(this.low[i % 3], positions[i]);
+      this.high[i % 3] = Math.max(this.high[i % 3], positions[i]);
     }
-    this.seen = new Int32Array(triangles.length / 3);
-    this.fillCells();
   }
 
   static async unpack(
@@ -74,7 +76,11 @@ export class Surface {
     const triangles = await unpackTriangles(data.triangles);
     const steps = data.difference === null ? null : await unpackRows(data.difference);
     const difference = steps === null ? null : Float32Array.from(steps, (n) => n * data.step[1]);
-    return new Surface(data, vertices, triangles, difference, elevationScale, ground);
+    const [across, up] = data.step;
+    const positions = Float64Array.from(vertices, (n, i) => n * (i % 3 === 2 ? up : across));
+    const surface = new Surface(data, positions, triangles, difference, elevationScale, ground);
+    surface.fillCells();
+    return surface;
   }
 
   get triangleCount(): number {
@@ -96,12 +102,13 @@ export class Surface {
   pick(from: Vector, direction: Vector, lift: number): Hit | null {
     const span = this.clipRay(from, direction, lift);
     if (span === null) return null;
+    const members = this.members ?? this.fillCells();
     this.round += 1;
     let best = Infinity;
     let found = -1;
     for (const [cell, leave] of this.walk(from, direction, span[0], span[1])) {
       for (let k = this.starts[cell]; k < this.starts[cell + 1]; k += 1) {
-        const triangle = this.members[k];
+        const triangle = members[k];
         if (this.seen[triangle] === this.round) continue;
         this.seen[triangle] = this.round;
         const t = this.intersect(triangle, from, direction, lift);
@@ -117,26 +124,32 @@ export class Surface {
     const y = from[1] + best * direction[1];
     // Of the plane, not of the ray, whose digits end where the camera is far away.
     const z = this.planeAt(this.corners(found), [x, y], [0, 0, 0], 0);
-    return { triangle: found, x, y, z };
+    // A triangle that stands upright has no plane over the map.
+    return { triangle: found, x, y, z: Number.isFinite(z) ? z : (from[2] + best * direction[2]) / lift };
   }
 
   /** Return the surface along a line: pieces of (distance, elevation), with gaps where it is off. */
   profile(from: [number, number], to: [number, number]): ProfilePoint[][] {
-    const length = Math.hypot(to[0] - from[0], to[1] - from[1]);
-    if (length === 0) return [];
+    return join(this.cutAll(from, to), Math.hypot(to[0] - from[0], to[1] - from[1]), SEAM);
+  }
+
+  /** Return the stretches of a line inside triangles, in any order. */
+  cutAll(from: [number, number], to: [number, number]): Stretch[] {
     const stretches: Stretch[] = [];
     const direction: Vector = [to[0] - from[0], to[1] - from[1], 0];
+    if (direction[0] === 0 && direction[1] === 0) return [];
+    const members = this.members ?? this.fillCells();
     this.round += 1;
     for (const [cell] of this.walk([from[0], from[1], 0], direction, 0, 1)) {
       for (let k = this.starts[cell]; k < this.starts[cell + 1]; k += 1) {
-        const triangle = this.members[k];
+        const triangle = members[k];
         if (this.seen[triangle] === this.round) continue;
         this.seen[triangle] = this.round;
         const stretch = this.cut(triangle, from, direction);
         if (stretch !== null) stretches.push(stretch);
       }
     }
-    return join(stretches, length);
+    return stretches;
   }
 
   /** Return cut or fill at a place. */
@@ -210,7 +223,8 @@ export class Surface {
   }
 
   /** Sort the triangles into square cells by the boxes around them. */
-  private fillCells(): void {
+  private fillCells(): Int32Array {
+    this.seen = new Int32Array(this.triangleCount);
     const width = this.high[0] - this.low[0];
     const height = this.high[1] - this.low[1];
     const wanted = Math.max(1, this.triangleCount / TRIANGLES_PER_CELL);
@@ -220,11 +234,13 @@ export class Surface {
     this.starts = new Int32Array(this.columns * this.rows + 2);
     this.eachCell((cell) => (this.starts[cell + 2] += 1));
     for (let k = 2; k < this.starts.length; k += 1) this.starts[k] += this.starts[k - 1];
-    this.members = new Int32Array(this.starts[this.starts.length - 1]);
+    const members = new Int32Array(this.starts[this.starts.length - 1]);
     this.eachCell((cell, triangle) => {
-      this.members[this.starts[cell + 1]] = triangle;
+      members[this.starts[cell + 1]] = triangle;
       this.starts[cell + 1] += 1;
     });
+    this.members = members;
+    return members;
   }
 
   private eachCell(take: (cell: number, triangle: number) => void): void {
@@ -328,14 +344,15 @@ export class Surface {
   }
 }
 
-/** Join stretches that follow each other; where the next begins further on there is a gap. */
-function join(stretches: Stretch[], length: number): ProfilePoint[][] {
+/** Join stretches that follow each other; where the next begins further on, by more than a share of
+ *  the length, there is a gap. */
+export function join(stretches: Stretch[], length: number, seam: number): ProfilePoint[][] {
   stretches.sort((a, b) => a.from - b.from || a.to - b.to);
   const pieces: ProfilePoint[][] = [];
   let end = -1;
   for (const one of stretches) {
     if (one.to <= end) continue;
-    const touches = pieces.length > 0 && one.from <= end + 1e-9;
+    const touches = pieces.length > 0 && one.from <= end + seam;
     if (!touches) pieces.push([[one.from * length, one.zFrom]]);
     pieces[pieces.length - 1].push([one.to * length, one.zTo]);
     end = one.to;

@@ -16,6 +16,7 @@ export function drawProfile(
   curves: Curve[],
   units: { horizontal: string; elevation: string },
   size: [number, number],
+  word = "elevation",
 ): SVGSVGElement {
   const svg = make("svg", { viewBox: `0 0 ${size[0]} ${size[1]}`, role: "img" }) as SVGSVGElement;
   const points = curves.flatMap((curve) => curve.pieces.flat());
@@ -37,10 +38,10 @@ export function drawProfile(
     }
   const words = (values: [number, number], unit: string): string =>
     `${values.map((value) => Number(value.toPrecision(6))).join(" to ")} ${unit}`.trim();
-  const reach = `distance ${words([0, right], units.horizontal)}, elevation ${words([low, high], units.elevation)}`;
+  const reach = `distance ${words([0, right], units.horizontal)}, ${word} ${words([low, high], units.elevation)}`;
   svg.setAttribute("aria-label", `Profile of ${curves.map(({ name }) => name.slice(0, 80)).join(", ")}: ${reach}`);
   addText(svg, (MARGIN.left + size[0]) / 2, size[1] - 4, label("distance", units.horizontal));
-  addText(svg, MARGIN.left, MARGIN.top - 2, label("elevation", units.elevation), "start");
+  addText(svg, MARGIN.left, MARGIN.top - 2, label(word, units.elevation), "start");
   return svg;
 }
 

@@ -4,7 +4,7 @@ import type { Marked } from "../annotations";
 import { fix } from "../elements";
 import type { Factors } from "../ground";
 import type { Payload } from "../payload";
-import type { ProfilePoint, Surface } from "../surface";
+import type { ProfilePoint, Terrain } from "../surface";
 import { measureSegment } from "./measuring";
 
 type Ground = (y: number) => Factors;
@@ -27,7 +27,7 @@ export interface Segment {
 
 /** Cut surfaces along a line. `owner` is the surface of which the line is part, if it is: then it
  *  runs along edges, between whose ends the surface is straight. */
-export function cutSection(path: Marked[], surfaces: Surface[], ground: Ground, owner?: Surface): Segment[] {
+export function cutSection(path: Marked[], surfaces: Terrain[], ground: Ground, owner?: Terrain): Segment[] {
   const segments: Segment[] = [];
   let start = 0;
   for (let k = 0; k + 1 < path.length; k += 1) {
@@ -117,7 +117,8 @@ function elevationAt(pieces: ProfilePoint[][], distance: number, tolerance: numb
 
 /** Write a section as CSV: station, coordinates of the CRS, elevation of each surface. */
 export function writeCsv(segments: Segment[], names: string[], payload: Payload): string {
-  const { axes, origin, scale, units, geographic, decimals } = payload;
+  const { axes, origin, scale, units, geographic, decimals, elevationName } = payload;
+  const word = elevationName.toLowerCase();
   const [across, up] = [decimals[0] + MORE_DECIMALS, decimals[1] + MORE_DECIMALS];
   const places = geographic ? 10 : across;
   const horizontal = geographic ? "degree" : units.horizontal;
@@ -125,7 +126,7 @@ export function writeCsv(segments: Segment[], names: string[], payload: Payload)
     withUnit("station", units.horizontal),
     withUnit(geographic ? "longitude" : axes[0][0].toLowerCase(), horizontal),
     withUnit(geographic ? "latitude" : axes[1][0].toLowerCase(), horizontal),
-    ...names.map((name) => withUnit(names.length > 1 ? `elevation ${name}` : "elevation", units.elevation)),
+    ...names.map((name) => withUnit(names.length > 1 ? `${word} ${name}` : word, units.elevation)),
   ];
   const lines = tabulate(segments).map(([station, x, y, ...elevations]) =>
     [

@@ -89,16 +89,17 @@ export class Tool {
     const parts = [
       `${names[0]} ${fix(x, decimals[0])}${unit}`,
       `${names[1]} ${fix(y, decimals[0])}${unit}`,
-      `Elevation ${fix(hit.z + origin[2], decimals[1])} ${units.elevation}`,
+      `${this.payload.elevationName} ${fix(hit.z + origin[2], decimals[1])} ${units.elevation}`,
       `Slope ${model.surface.slope(hit.triangle).toFixed(1)}\u00b0`,
     ];
     if (model.surface.difference !== null) {
       const change = model.surface.differenceAt(hit);
       parts.push(`${change < 0 ? "Cut" : "Fill"} ${fix(Math.abs(change), decimals[1])} ${units.elevation}`);
     }
+    parts.push(model.describeExactness([hit]));
     // Isolated, for a name written from right to left would turn the numbers round.
     if (this.scene.models.length > 1) parts.push(`\u2068${model.surface.data.name.slice(0, 80)}\u2069`);
-    return parts.map((part) => part.trim()).join("   ");
+    return parts.map((part) => part.trim()).filter((part) => part !== "").join("   ");
   }
 
   choose(tool: Measured): void {
@@ -216,6 +217,16 @@ export class Tool {
     return before !== null && before[2] < at[2] * (1 - BEHIND);
   }
 
+  /** Measure anew on what is shown now. */
+  renew(): void {
+    for (const one of this.marked) {
+      const { hit, model } = one;
+      const { surface } = model;
+      one.hit = surface.pick([hit.x, hit.y, surface.high[2] + 1], [0, 0, -1], 1) ?? hit;
+    }
+    if (this.marked.length > 0) this.showMeasured();
+  }
+
   private tellResult(): void {
     const count = this.marked.length;
     tell(`${count === 1 ? "1 place" : `${count} places`}. ${find<HTMLElement>("result").textContent ?? ""}`);
@@ -259,7 +270,7 @@ export class Tool {
     const names = curves.length < 2 || segments.length === 0 ? [] : curves.map(({ name, color }) => makeText("span", `\u2014 ${name}`, color));
     // Drawn before there is a line, too: so the view does not change its size with the second place.
     const height = !isSmallScreen() ? 150 : window.innerHeight < 500 ? 80 : 96;
-    box.replaceChildren(...names, drawProfile(curves, units, [width, height]));
+    box.replaceChildren(...names, drawProfile(curves, units, [width, height], this.payload.elevationName.toLowerCase()));
   }
 
   /** What is coloured by cut and fill is one of the other surfaces once more. */
@@ -282,8 +293,13 @@ export class Tool {
     return (
       `Distance ${say(length)}${isAlong ? " along the line" : ""}, along the ground ${say(groundLength)}` +
       `${isWhole ? "" : ` on the ${say(covered)} that are on the surface`}, ` +
-      `rise ${fix(rise, decimals[1])} ${units.elevation}`.trimEnd() + grade
+      `rise ${fix(rise, decimals[1])} ${units.elevation}`.trimEnd() + grade + this.describeExactness(path)
     );
+  }
+
+  private describeExactness(path: Marked[]): string {
+    const words = path[0].model.describeExactness(path.map(({ hit }) => hit));
+    return words === "" ? "" : `. ${words}`;
   }
 
   private describeArea(): string {
