@@ -28,13 +28,15 @@ class _Handler(SimpleHTTPRequestHandler):
 
     protocol_version = "HTTP/1.1"
 
+    server: ThreadingHTTPServer
+
     def __init__(self, *given: Any, page: bytes, **options: Any) -> None:
         self._page = page
         super().__init__(*given, **options)
 
     def send_head(self) -> Any:
         """Answer a request, unless it came by another name: then a site elsewhere sent it."""
-        if self.headers.get("Host") != f"{_HOST}:{self.server.server_address[1]}":
+        if self.headers.get("Host") != f"{_HOST}:{self.server.server_port}":
             self.send_error(HTTPStatus.FORBIDDEN)
             return None
         path = urlsplit(self.path).path
@@ -79,7 +81,7 @@ def serve(page: str, folder: Path) -> Iterator[str]:
     thread = threading.Thread(target=server.serve_forever, daemon=True)
     thread.start()
     try:
-        yield f"http://{_HOST}:{server.server_address[1]}/"
+        yield f"http://{_HOST}:{server.server_port}/"
     finally:
         server.shutdown()
         server.server_close()
