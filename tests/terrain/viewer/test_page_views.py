@@ -83,6 +83,23 @@ def test_a_section_is_that_of_profile(name, tmp_path):
 
 
 @pytest.mark.slow
+def test_a_line_along_the_boundary_lies_on_the_surface(tmp_path):
+    """Vertices on one line, whose coordinates from the page's origin are no doubles."""
+    step = np.array([3.007, 1.003])
+    edge = CORNER[:2] + np.arange(21)[:, None] * step
+    inside = CORNER[:2] + np.random.default_rng(4).integers(5_000, 20_000, (30, 2)) / 1000 * [1, 3]
+    xy = np.concatenate([edge, inside]).round(3)
+    z = 300 + np.arange(len(xy)) % 7 / 4
+    tin = ts.triangulate(np.column_stack([xy, z]), crs="EPSG:32616", elevation_unit="m")
+    with open_page(ts.preview(tin).save(tmp_path / "a.html")) as page:
+        for line in (xy[[0, 20]], xy[[20, 0]], xy[[3, 17]]):
+            _, rows = read_section(page, line)
+            assert len(rows) == round(np.hypot(*(line[1] - line[0])) / np.hypot(*step)) + 1
+            nearest = np.abs(xy[:, None] - rows[:, 1:3]).sum(axis=2).argmin(axis=0)
+            assert np.abs(rows[:, 3] - z[nearest]).max() < 1e-3
+
+
+@pytest.mark.slow
 def test_a_section_is_blank_in_a_gap_and_is_saved_as_a_file(tmp_path):
     tin = make_hills(holes=[HOLE])
     line = CORNER[:2] + np.array([[100.0, 150.0], [200.0, 150.0]])

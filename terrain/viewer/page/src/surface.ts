@@ -37,6 +37,9 @@ const TRIANGLES_PER_CELL = 2;
 /** Share of a triangle by which a ray may pass beside it: no gap opens where rounding parts two. */
 const SEAM = 1e-9;
 
+/** Of a step: what rounding takes a place off it, at most. */
+const OFF_STEP = 1e-3;
+
 export class Surface {
   readonly low: Vector = [Infinity, Infinity, Infinity];
   readonly high: Vector = [-Infinity, -Infinity, -Infinity];
@@ -60,6 +63,8 @@ export class Surface {
     /** Horizontal units in one unit of elevation. */
     readonly elevationScale: number,
     readonly ground: (y: number) => Factors,
+    /** Coordinates are whole numbers of this, across; 0 where they are any. */
+    private readonly step = 0,
   ) {
     for (let i = 0; i < positions.length; i += 1) {
       this.low[i % 3] = Math.min(this.low[i % 3], positions[i]);
@@ -78,7 +83,7 @@ export class Surface {
     const difference = steps === null ? null : Float32Array.from(steps, (n) => n * data.step[1]);
     const [across, up] = data.step;
     const positions = Float64Array.from(vertices, (n, i) => n * (i % 3 === 2 ? up : across));
-    const surface = new Surface(data, positions, triangles, difference, elevationScale, ground);
+    const surface = new Surface(data, positions, triangles, difference, elevationScale, ground, across);
     surface.fillCells();
     return surface;
   }
@@ -136,6 +141,7 @@ export class Surface {
   /** Return the stretches of a line inside triangles, in any order. */
   cutAll(from: [number, number], to: [number, number]): Stretch[] {
     const stretches: Stretch[] = [];
+    [from, to] = [this.onStep(from), this.onStep(to)];
     const direction: Vector = [to[0] - from[0], to[1] - from[1], 0];
     if (direction[0] === 0 && direction[1] === 0) return [];
     const members = this.members ?? this.fillCells();
@@ -145,7 +151,7 @@ export class Surface {
         const triangle = members[k];
         if (this.seen[triangle] === this.round) continue;
         this.seen[triangle] = this.round;
-        const stretch = this.cut(triangle, from, direction);
+        const stretch = this.cut(triangle, from, to);
         if (stretch !== null) stretches.push(stretch);
       }
     }
@@ -186,23 +192,48 @@ export class Surface {
     return t >= 0 ? t : Infinity;
   }
 
+  /** Return a place that is a whole number of steps but for rounding as a vertex there would be. */
+  private onStep([x, y]: [number, number]): [number, number] {
+    const round = (value: number): number => {
+      const whole = Math.round(value / this.step);
+      return Math.abs(value / this.step - whole) < OFF_STEP ? whole * this.step : value;
+    };
+    return this.step > 0 ? [round(x), round(y)] : [x, y];
+  }
+
+  /** Return a place in steps: whole numbers, with which it is exact on which side of an edge the
+   *  ends of a line lie, so that one along edges is on the surface as ``ts.profile`` tells. */
+  private inSteps([x, y]: [number, number] | Vector): [number, number] {
+    const count = (value: number): number => {
+      const whole = Math.round(value / this.step);
+      return whole * this.step === value ? whole : value / this.step;
+    };
+    return this.step > 0 ? [count(x), count(y)] : [x, y];
+  }
+
   /** Return the stretch of a line (parameter 0 to 1) inside a triangle, seen from above. */
-  private cut(triangle: number, from: [number, number], direction: Vector): Stretch | null {
+  private cut(triangle: number, from: [number, number], to: [number, number]): Stretch | null {
     const corners = this.corners(triangle);
+    const steps = corners.map((corner) => this.inSteps(corner));
+    const [start, end] = [this.inSteps(from), this.inSteps(to)];
+    const [p, q, r] = steps;
+    // A sliver that is a line in steps would be everywhere along it, at no certain elevation.
+    if ((q[0] - p[0]) * (r[1] - p[1]) === (q[1] - p[1]) * (r[0] - p[0])) return null;
     let low = 0;
     let high = 1;
     for (let k = 0; k < 3; k += 1) {
-      const a = corners[k];
-      const b = corners[(k + 1) % 3];
+      const a = steps[k];
+      const b = steps[(k + 1) % 3];
       const [dx, dy] = [b[0] - a[0], b[1] - a[1]];
-      const side = dx * (from[1] - a[1]) - dy * (from[0] - a[0]);
-      const change = dx * direction[1] - dy * direction[0];
+      const side = dx * (start[1] - a[1]) - dy * (start[0] - a[0]);
+      const change = dx * (end[1] - start[1]) - dy * (end[0] - start[0]);
       if (change === 0) {
         if (side < 0) return null;
       } else if (change > 0) low = Math.max(low, -side / change);
       else high = Math.min(high, -side / change);
     }
     if (!(low < high)) return null;
+    const direction: Vector = [to[0] - from[0], to[1] - from[1], 0];
     const at = (t: number): number => this.planeAt(corners, from, direction, t);
     return { from: low, to: high, zFrom: at(low), zTo: at(high) };
   }
