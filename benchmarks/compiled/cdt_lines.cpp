@@ -29,8 +29,7 @@ bool save(const Kept& kept, const char* path) {
 int main(int argc, char** argv) {
   std::vector<CDT::V2d<double>> points;
   std::vector<CDT::Edge> segments;
-  if (argc != 3 || !read_pairs<double>(argv[1], points) ||
-      !read_segments(argv[2], segments)) {
+  if (argc != 3 || !read_pairs<double>(argv[1], points) || !read_segments(argv[2], segments)) {
     std::fprintf(stderr, "usage: %s POINTS.bin SEGMENTS.bin\n", argv[0]);
     return 2;
   }

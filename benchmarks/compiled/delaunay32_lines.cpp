@@ -5,8 +5,7 @@
 int main(int argc, char** argv) {
   std::vector<Point> points;
   std::vector<delaunay32::Constraint> segments;
-  if (argc != 4 || !read_pairs<double>(argv[1], points) ||
-      !read_segments(argv[2], segments)) {
+  if (argc != 4 || !read_pairs<double>(argv[1], points) || !read_segments(argv[2], segments)) {
     std::fprintf(stderr, "usage: %s POINTS.bin SEGMENTS.bin THREADS (0: all cores)\n", argv[0]);
     return 2;
   }

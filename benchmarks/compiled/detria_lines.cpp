@@ -39,8 +39,7 @@ struct Segment {
 int main(int argc, char** argv) {
   std::vector<detria::PointD> points;
   std::vector<Segment> segments;
-  if (argc != 3 || !read_pairs<double>(argv[1], points) ||
-      !read_segments(argv[2], segments)) {
+  if (argc != 3 || !read_pairs<double>(argv[1], points) || !read_segments(argv[2], segments)) {
     std::fprintf(stderr, "usage: %s POINTS.bin SEGMENTS.bin\n", argv[0]);
     return 2;
   }

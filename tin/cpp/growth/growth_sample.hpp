@@ -21,8 +21,7 @@ template <typename Near>
 class GrowthSample {
  public:
   // `hull` counter-clockwise.
-  GrowthSample(const PointGrid& grid, const std::vector<Vertex>& hull)
-      : grid_(grid), hull_(hull) {}
+  GrowthSample(const PointGrid& grid, const std::vector<Vertex>& hull) : grid_(grid), hull_(hull) {}
 
   // False if insertion is likely to be quicker; true where there are too few points to tell.
   bool is_cheap() const {

@@ -141,7 +141,8 @@ class MeshArrays {
     release_freed_memory();
     if (editor.count() < editor.slots()) gather_vertices();
     const Point* const points = points_.empty() ? editor.points().begin() : points_.data();
-    const std::vector<Vertex> found = known.empty() ? find_sweep(points, team) : std::vector<Vertex>();
+    const std::vector<Vertex> found =
+        known.empty() ? find_sweep(points, team) : std::vector<Vertex>();
     const std::vector<Vertex>& sweep = known.empty() ? found : known;
     const WithGhost<Vertex> sweep_of = positions_in(sweep, team);
     const PointsInSweep in_sweep(points, sweep);
