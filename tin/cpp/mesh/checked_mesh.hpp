@@ -31,7 +31,7 @@ class CheckedMesh {
       : editor_(std::move(editor)), sweep_(std::move(sweep)) {}
 
   const MeshEditor& editor() const { return editor_; }
-  MeshEditor& editor() {  // for those who are never mistaken
+  MeshEditor& editor_to_change() {  // for those who are never mistaken
     sweep_ = {};
     return editor_;
   }

@@ -254,7 +254,7 @@ class EditedMesh {
   template <typename Do>
   auto with_editor(Do&& edit) -> decltype(edit(std::declval<MeshEditor&>())) {
     if (part_ && is_part_worn()) make_whole();
-    return part_ ? edit(*part_) : edit(mesh_->editor());
+    return part_ ? edit(*part_) : edit(mesh_->editor_to_change());
   }
 
   // An edit takes some microseconds more than in the mesh of all, which takes as long to make as
