@@ -29,7 +29,6 @@ if TYPE_CHECKING:
 _MOST_CELLS = 1_000_000
 _UNNAMED = "Terrain surface"
 _PREVIEW = "terrain.viewer.presentation.preview"
-_PAGES = (".html", ".htm")
 _OF_TILESETS = ("exaggeration", "title", "elevations", "tint", "contours")
 """Options of what a page shows of a tileset."""
 
@@ -202,7 +201,9 @@ def _serve(shown: TilesetPreview, job: Job) -> None:
 
 
 def _is_page(output: Path | None) -> bool:
-    return output is not None and output.suffix.lower() in _PAGES
+    from ....terrain.viewer import PAGE_SUFFIXES
+
+    return output is not None and output.suffix.lower() in PAGE_SUFFIXES
 
 
 def _require_several(files: Sequence[Path], output: Path | None) -> None:
