@@ -230,7 +230,7 @@ def _gather_account(
     left_out = np.flatnonzero(vertex_of < 0).astype(np.int32)
     overruled = made.overruled
     # the earlier one of two lines that cross in front
-    crossings = made.noded.crossings
+    crossings = made.crossings
     order = np.argsort(crossings.lines, axis=1, kind="stable")
     # why each row was left out, as indices into `LEFT_OUT`; `rows` were used
     xy = inputs.points[left_out, :2]

@@ -23,7 +23,7 @@ from ..constraints import (
     force,
     node,
 )
-from ..report import Overruled
+from ..report import Crossings, Overruled
 from ..triangulation import Triangulation
 from ..validation import require_three, thread_count
 from .duplicates import merge_rows
@@ -47,8 +47,8 @@ class ConstrainedTriangulation(NamedTuple):
     """What is left of the lines, water excluded."""
     merges: dict[str, Any]
     """Fields of the report about merged rows."""
-    noded: Noded
-    """Where lines meet; its vertices are numbered as ``number_of`` says."""
+    crossings: Crossings
+    """Where lines meet; vertices are numbered as ``number_of`` says."""
     overruled: Overruled
     """Likewise."""
     number_of: Int32Array
@@ -61,6 +61,18 @@ class _Merged(NamedTuple):
     polylines: Polylines
     mesh: _kernel.Mesh
     merges: dict[str, Any]
+    overruled: Overruled
+
+
+class _WithLines(NamedTuple):
+    """A mesh whose fixed edges are the segments of lines, on dry land."""
+
+    mesh: _kernel.Mesh
+    points: Float64Array
+    """(v, 3), of the mesh's vertices; without gaps."""
+    polylines: Polylines
+    number_of: Int32Array
+    crossings: Crossings
     overruled: Overruled
 
 
@@ -80,6 +92,32 @@ def triangulate_constrained(
     threads = thread_count(options.threads, len(points))
     xyz = points if len(rows) == len(points) else points[rows]
     merged = _merge(xyz, rows, lines, options, threads=threads, progress=progress)
+    found = _force_lines(merged, lines, options, threads=threads)
+    vertex_of, merges = found.number_of[merged.vertex_of], merged.merges
+    del merged  # of as many bytes as the arrays to come
+    mesh, points, polylines = found.mesh, found.points, found.polylines
+    if options.conforming:
+        if len(points) < len(found.number_of):  # numbers without gaps
+            mesh = build_mesh(points, polylines, threads=threads)
+        mesh, points, polylines = conform(
+            mesh, points, polylines, lines.priorities, threads=threads
+        )
+    return ConstrainedTriangulation(
+        Triangulation(points, *mesh.arrays(threads)),
+        vertex_of[: len(xyz)],
+        vertex_of[len(xyz) :],
+        polylines,
+        merges,
+        found.crossings,
+        found.overruled,
+        found.number_of,
+    )
+
+
+def _force_lines(
+    merged: _Merged, lines: LineSet, options: BuildOptions, *, threads: int
+) -> _WithLines:
+    """Cut lines where they meet, fix their segments in the mesh, and leave out what is in water."""
     mesh = merged.mesh
     noded = accept_noded(merged.polylines, lines.elevations)
     is_simple = options.snap == 0.0 and not (lines.priorities == ABOVE_ALL).any()
@@ -109,24 +147,11 @@ def triangulate_constrained(
     if not is_forced:
         mesh.remove(np.flatnonzero(wet).astype(np.int32))
         force(mesh, polylines)
-    number_of = np.where(wet, -1, np.cumsum(~wet) - 1).astype(np.int32)
-    points, polylines = points[~wet], polylines.renumber(number_of)
-    if options.conforming:
-        if wet.any():  # numbers without gaps
-            mesh = build_mesh(points, polylines, threads=threads)
-        mesh, points, polylines = conform(
-            mesh, points, polylines, lines.priorities, threads=threads
-        )
-    return ConstrainedTriangulation(
-        Triangulation(points, *mesh.arrays(threads)),
-        number_of[merged.vertex_of[: len(xyz)]],
-        number_of[merged.vertex_of[len(xyz) :]],
-        polylines,
-        merged.merges,
-        noded,
-        overruled,
-        number_of,
-    )
+    number_of = np.arange(len(points), dtype=np.int32)
+    if wet.any():
+        number_of = np.where(wet, -1, np.cumsum(~wet) - 1).astype(np.int32)
+        points, polylines = points[~wet], polylines.renumber(number_of)
+    return _WithLines(mesh, points, polylines, number_of, noded.crossings, overruled)
 
 
 def _is_forced(mesh: _kernel.Mesh, polylines: Polylines) -> bool:

@@ -166,7 +166,7 @@ def _gather_arrays_alone(breaklines: Sequence[Any]) -> LineSet | None:
     n = len(breaklines)
     return LineSet(
         np.ascontiguousarray(coords[:, :2]),
-        coords[:, 2],
+        coords[:, 2].copy(),  # a view would keep the eastings and northings, too
         find_offsets(map(len, breaklines)),
         ConstraintTable.of_kind("hard", np.arange(n, dtype=np.int32), np.zeros(n)),
     )

@@ -101,7 +101,7 @@ class Triangulator {
       return grow<Near>(grid, hull);
     });
     if (is_grown || team_.is_stopped()) return;
-    hull = {};
+    free_memory(hull);
     insert_all(grid);
   }
 

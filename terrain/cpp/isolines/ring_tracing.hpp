@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "../../../tin/cpp/base/arrays.hpp"
 #include "../../../tin/cpp/base/point.hpp"
 #include "../../../tin/cpp/predicates/predicates.hpp"
 
@@ -62,7 +63,7 @@ class RingTracer {
     for (const BoundarySegment& s : segments_) {
       edges_.push_back({number_of(s.from), number_of(s.to)});
     }
-    segments_ = {};
+    free_memory(segments_);
   }
 
   std::int32_t number_of(Point p) const {

@@ -105,6 +105,12 @@ struct ScratchMemory {
 template <typename T>
 using ScratchVector = std::vector<T, ScratchMemory<T>>;
 
+// Empty a vector and give up its memory, which `v = {}` keeps: it assigns an empty list of values.
+template <typename T, typename Memory>
+void free_memory(std::vector<T, Memory>& v) {
+  std::vector<T, Memory>().swap(v);
+}
+
 struct FreeMemory {
   void operator()(void* memory) const { std::free(memory); }
 };

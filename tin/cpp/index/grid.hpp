@@ -87,13 +87,13 @@ class PointGrid {
   // The caller's row of each position; repeated rows are not counted.
   const Row* rows() const { return rows_.get(); }
 
-  // Keep the points and their order, and give up the cells: nothing can be searched any more.
+  // Keep the points, their order and box, and give up the cells: nothing can be searched any more.
   void drop_cells() {
-    levels_ = {};
-    start_ = {};
-    child_row_ = {};
-    children_ = {};
-    spans_ = {};
+    levels_.resize(1);
+    free_memory(start_);
+    free_memory(child_row_);
+    free_memory(children_);
+    free_memory(spans_);
   }
 
   // For each input row the first row at its point; empty if no two rows share one.

@@ -20,6 +20,7 @@
 #include <utility>
 #include <vector>
 
+#include "../base/arrays.hpp"
 #include "../base/parallel.hpp"
 #include "barriers.hpp"
 
@@ -40,9 +41,9 @@ class VertexGradients {
     find_sectors();
     join_sectors();
     solve(team);
-    steps_ = {};
-    begin_ = {};
-    blocks_ = {};
+    free_memory(steps_);
+    free_memory(begin_);
+    free_memory(blocks_);
   }
 
   const Gradient& at(Triangle t, std::uint32_t corner) const {

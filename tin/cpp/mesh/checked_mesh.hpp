@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "../base/arrays.hpp"
 #include "../base/ids.hpp"
 #include "../index/hilbert_order.hpp"
 #include "mesh_editor.hpp"
@@ -32,7 +33,7 @@ class CheckedMesh {
 
   const MeshEditor& editor() const { return editor_; }
   MeshEditor& editor_to_change() {  // for those who are never mistaken
-    sweep_ = {};
+    free_memory(sweep_);
     return editor_;
   }
   const std::vector<Vertex>& sweep() const { return sweep_; }  // empty if it is not known
@@ -42,7 +43,7 @@ class CheckedMesh {
     if (std::int64_t{count} + editor_.slots() > kMostPoints) {
       throw std::invalid_argument("more points than 32-bit indices can number");
     }
-    sweep_ = {};
+    free_memory(sweep_);
     const std::int32_t first = editor_.slots();
     for (std::int32_t i = 0; i < count; ++i) editor_.add_slot();
     const HilbertOrder order(points, count);
@@ -57,13 +58,13 @@ class CheckedMesh {
     if (!is_slot(slot) || editor_.mesh().is_alive(slot)) {
       throw std::invalid_argument("the slot must be one whose vertex was removed");
     }
-    sweep_ = {};
+    free_memory(sweep_);
     return editor_.insert(p, slot);
   }
 
   // Whether all were removed; stops at the first without which there would be no triangle.
   bool remove(const std::int32_t* vertices, std::size_t count) {
-    if (count > 0) sweep_ = {};
+    if (count > 0) free_memory(sweep_);
     for (std::size_t i = 0; i < count; ++i) {
       const Vertex v = checked(Vertex{vertices[i]});
       if (editor_.has_fixed_edge(v)) throw std::invalid_argument("a fixed edge ends at the vertex");

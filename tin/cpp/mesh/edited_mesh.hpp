@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "../base/arrays.hpp"
 #include "../base/ids.hpp"
 #include "../base/point.hpp"
 #include "../base/range.hpp"
@@ -277,7 +278,7 @@ class EditedMesh {
       }
     }
     mesh_ = std::make_shared<CheckedMesh>(std::move(editor));
-    steps_ = {};
+    free_memory(steps_);
     part_.reset();
   }
 
