@@ -404,12 +404,13 @@ def _make_other_row(result: Result, ours: Result) -> list[str]:
 
 EDITS_NOTES = """\
 Random edits of a TIN of uniform points, one call each; *batch* inserts as many points as the TIN
-has in one call; one core each. *tinsmith* includes the first edit, which makes a mesh of the
-arrays of the TIN; *opened* excludes it, as for the peers, which are meshes from the start; *and
-its arrays* includes reading the triangles afterwards; *building* is a triangulation of the points
-of the batch alone. CGAL (`Delaunay_triangulation_2`) and startinpy have stable vertex handles and
-no history. CGAL has no elevations; a move in startinpy is a removal and an insertion, and its
-points are sorted along a curve first, which is not timed.
+has in one call; one core each. *tinsmith* edits a TIN that was never edited: its first edit keeps
+what the next ones need; *opened* does not count that, as the peers, which are meshes from the
+start, do not count their building; *and its arrays* includes reading the triangles afterwards;
+*building* is a triangulation of the points of the batch alone. CGAL (`Delaunay_triangulation_2`)
+and startinpy have stable vertex handles and no history. CGAL has no elevations; a move in
+startinpy is a removal and an insertion, and its points are sorted along a curve first, which is
+not timed.
 """
 
 ANSWERS_NOTES = """\
