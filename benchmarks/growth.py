@@ -2,9 +2,13 @@
 
 Data sets are those on which algorithms grow out of proportion: points on a slanted line, which are
 collinear in decimals and not in doubles, rails, rotated grids, a fan, clusters far apart. Each
-product runs on n, 2 n, 4 n ... points until it takes more than the limit; then builds with waters
-over and in each other, and a pad with many notches. The exponent is that of the least squares line
-through the logarithms of the last four processor times. 1 is linear.
+product runs on n, 2 n, 4 n ... points until it takes more than the limit; then the tasks: builds
+with waters over and in each other, a pad with many notches, the triangulation alone. The exponent
+is that of the least squares line through the logarithms of the last four processor times, 1 is
+linear; *per point* is the time of a point at the largest size, by that at the smallest.
+
+The triangulation alone, from ten thousand to a million points: ``python -m benchmarks.growth --data
+--tasks "slanted line, triangulated" ... --start 15625 --most 1000000 --limit 60``.
 """
 
 from __future__ import annotations
@@ -12,7 +16,7 @@ from __future__ import annotations
 import argparse
 import math
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from functools import partial
 from typing import Any
@@ -41,6 +45,7 @@ COLUMNS = {
     "size": "{:,}",
     "seconds": "{:.3f}",
     "exponent": "{:.2f}",
+    "per point": "{:.2f}",
     "refused": TEXT,
 }
 
@@ -55,10 +60,10 @@ def make_slanted_line(n: int) -> np.ndarray:
     return np.vstack([np.column_stack([x, x / 3, np.sin(x)]), [[n / 2, 2.0 * n, 0]]])
 
 
-def make_rails(n: int) -> np.ndarray:
-    along = np.repeat(np.arange(n / 2), 2)
+def make_rails(n: int, degrees: float = 18.434948822922) -> np.ndarray:
+    along = np.repeat(np.arange(float(n // 2)), 2)
     across = np.tile([0.0, 1.435], n // 2)
-    return np.column_stack([_turn(along * 0.6, across), 0.02 * np.sin(along / 7) + 300])
+    return np.column_stack([_turn(along * 0.6, across, degrees), 0.02 * np.sin(along / 7) + 300])
 
 
 def make_rotated_grid(n: int) -> np.ndarray:
@@ -71,6 +76,22 @@ def make_rotated_grid(n: int) -> np.ndarray:
 def make_hills(n: int) -> np.ndarray:
     xy = np.random.default_rng(1).random((n, 2)) * math.sqrt(n)
     return np.column_stack([xy, 3 * np.sin(xy[:, 0] / 9) + 2 * np.cos(xy[:, 1] / 7)])
+
+
+def make_comb(n: int) -> np.ndarray:
+    """Teeth of points in straight lines, and a back that joins them."""
+    of_tooth = max(2, math.isqrt(n) * 4)
+    tooth, along = np.divmod(np.arange(n), of_tooth)
+    back = np.arange(n // of_tooth * 8)
+    x, y = np.append(tooth, back / 8.0), np.append(along * 0.05, np.full(len(back), -1.0))
+    return np.column_stack([_turn(x * 10.0, y), np.sin(x) + 0.1 * y])
+
+
+def make_spiral(n: int) -> np.ndarray:
+    """Places along the spiral of Archimedes, whose rounds are 20 steps apart."""
+    angle = np.sqrt(np.arange(1.0, n + 1) / (10.0 / math.pi))
+    radius = 20.0 * angle / (2 * math.pi)
+    return np.column_stack([radius * np.cos(angle), radius * np.sin(angle), np.sin(angle)])
 
 
 def _turn(x: np.ndarray, y: np.ndarray, degrees: float = 18.434948822922) -> np.ndarray:
@@ -159,6 +180,23 @@ TASKS: dict[str, tuple[Callable[[int], Any], Callable[[Any], object]]] = {
 }
 """What is made for a size, and what is done with it, by name."""
 
+POINT_SETS: dict[str, Callable[[int], np.ndarray]] = {
+    "hills": make_hills,
+    "slanted line": make_slanted_line,
+    **{
+        f"rails at {degrees} degrees": partial(make_rails, degrees=degrees)
+        for degrees in (0, 37, 45, 89.9)
+    },
+    "circle and its middle": make_fan,
+    "clusters": make_clusters,
+    "comb": make_comb,
+    "spiral": make_spiral,
+}
+TASKS |= {
+    f"{name}, triangulated": (make, partial(ts.triangulate, threads=1))
+    for name, make in POINT_SETS.items()
+}
+
 
 @dataclass(frozen=True)
 class Growth:
@@ -179,6 +217,13 @@ class Growth:
         if len(last) < 3:
             return math.nan
         return float(np.polyfit(*zip(*last, strict=True), 1)[0])
+
+    @property
+    def per_point(self) -> float:
+        """Time of a point at the largest size by that at the smallest; NaN of less than two."""
+        if len(self.sizes) < 2:
+            return math.nan
+        return self.seconds[-1] / self.sizes[-1] * self.sizes[0] / self.seconds[0]
 
 
 def measure(
@@ -216,8 +261,9 @@ def _double(start: int, most: int) -> Iterator[int]:
 def main(arguments: list[str] | None = None) -> None:
     """Print a table of the exponents, and of the times of the largest sizes."""
     parser = argparse.ArgumentParser(prog="python -m benchmarks.growth", description=__doc__)
-    parser.add_argument("--data", nargs="+", choices=DATASETS, default=list(DATASETS))
+    parser.add_argument("--data", nargs="*", default=list(DATASETS), help=_list(DATASETS))
     parser.add_argument("--products", nargs="+", choices=PRODUCTS, default=list(PRODUCTS))
+    parser.add_argument("--tasks", nargs="*", default=list(TASKS), help=_list(TASKS))
     parser.add_argument("--start", type=int, default=500, help="points; default 500")
     parser.add_argument("--most", type=int, default=16_000, help="points; default 16,000")
     parser.add_argument("--limit", type=float, default=2.0, help="seconds; default 2")
@@ -229,13 +275,16 @@ def main(arguments: list[str] | None = None) -> None:
         for data in given.data
         for name in given.products
     ]
-    if len(given.data) == len(DATASETS):
-        runs += [("", name, *task) for name, task in TASKS.items()]
+    runs += [("", name, *TASKS[name]) for name in given.tasks]
     for data, name, make, run in runs:
         found = measure(make, run, start=given.start, most=given.most, limit=given.limit)
         size, seconds = (found.sizes or (0,))[-1], (found.seconds or (math.nan,))[-1]
-        table.show(data, name, size, seconds, found.exponent, found.refusal)
+        table.show(data, name, size, seconds, found.exponent, found.per_point, found.refusal)
     table.write(given.json)
+
+
+def _list(names: Iterable[str]) -> str:
+    return "; ".join(names) + "; default all"
 
 
 def _build(make: Callable[[int], np.ndarray], count: int) -> ts.TIN:

@@ -16,6 +16,11 @@ def test_the_exponent_is_that_of_the_last_sizes(exponent):
     assert math.isnan(Growth(sizes[:2], times[:2]).exponent)
 
 
+def test_the_time_of_a_point_is_compared_with_that_at_the_smallest_size():
+    assert Growth((10, 20, 40), (1.0, 9.0, 6.0)).per_point == pytest.approx(1.5)
+    assert math.isnan(Growth((10,), (1.0,)).per_point)
+
+
 @pytest.mark.parametrize("data", DATASETS)
 def test_every_product_runs_on_every_data_set(data):
     for product in PRODUCTS.values():
