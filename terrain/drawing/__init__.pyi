@@ -4,6 +4,8 @@ from .arguments import UNTITLED as UNTITLED
 from .arguments import parse_text as parse_text
 from .arguments import parse_title as parse_title
 from .arguments import require_features as require_features
+from .dxf_documents import fixed_dxf_dates as fixed_dxf_dates
+from .dxf_documents import set_paper as set_paper
 from .furniture import NORTH_ARROW as NORTH_ARROW
 from .furniture import Legend as Legend
 from .furniture import make_legend as make_legend
@@ -29,7 +31,6 @@ from .palette import choose_palette as choose_palette
 from .palette import interpolate_colors as interpolate_colors
 from .palette import interpolate_tints as interpolate_tints
 from .palette import parse_hex as parse_hex
-from .reproducible import fixed_dxf_dates as fixed_dxf_dates
 from .rounding import choose_ticks as choose_ticks
 from .rounding import format_number as format_number
 from .rounding import round_down as round_down

@@ -21,7 +21,7 @@ from ....base.policies import DrawingVersion
 from ....base.results import Features
 from ....base.sentences import FILE
 from ....terrain import contour_labels
-from ....terrain.drawing import fixed_dxf_dates
+from ....terrain.drawing import fixed_dxf_dates, set_paper
 from ....tin import TIN, Surface, Survey
 from ....tin.topology import directed_edges, edge_keys
 from ...registry import select_attributes, warn_of_unknown_elevations
@@ -49,9 +49,18 @@ if TYPE_CHECKING:
 _CHUNK = 10_000
 _CUT_FILL = "cut_fill"
 """A column of points that are set out: "C 0.350", "F 1.200"."""
-_WIDE = 1.5
-"""Width of a window by its height."""
+_WIDE = 1.4
+"""Width of a window by its height, about that of the paper."""
 _AIR = 1.1
+_ALONE = 5.0
+"""What stands for the mean distance of points where there is none, in CRS units."""
+_CROSS = 3
+"""The mark of points, of ``$PDMODE``; the usual one is a dot, which is not seen."""
+_PAPER = (420.0, 297.0)
+"""Millimetres: A3, landscape, the paper that a drawing fits on."""
+_FARTHEST = 40e6
+"""Millimetres: how far a drawing may lie from its origin at the scale of the paper. LibreCAD counts
+pixels, 1200 to an inch, in 32 bits: what lies farther is not on its page."""
 
 
 def write(
@@ -161,7 +170,7 @@ def _make_document(
         layer = document.layers.add(name, color=colour)
         if version != "R12" and name in HEAVY:
             layer.dxf.lineweight = HEAVY[name]
-    _set_view(document, obj, factor)
+    _set_view(document, obj, factor, unit)
     if obj.crs is not None:
         document.header.custom_vars.append(CRS_PROPERTY, " ".join(str(obj.crs).split()))
         if obj.elevation_unit is None:
@@ -169,8 +178,10 @@ def _make_document(
     return document
 
 
-def _set_view(document: Any, obj: TIN | Survey | Features, factor: float) -> None:
-    """Let programs open the drawing with all that is in it in view."""
+def _set_view(
+    document: Any, obj: TIN | Survey | Features, factor: float, unit: Unit | None
+) -> None:
+    """Let programs open and print the drawing with all that is in it in view."""
     points = obj.coordinates if isinstance(obj, Features) else obj.points
     if isinstance(obj, Survey):
         lines = [np.asarray(getattr(line, "coords", line))[:, :2] for line in obj.breaklines]
@@ -183,7 +194,14 @@ def _set_view(document: Any, obj: TIN | Survey | Features, factor: float) -> Non
     document.modelspace().reset_extents(tuple(low.tolist()), tuple(high.tolist()))
     middle, sides = (low + high)[:2] / 2, (high - low)[:2]
     height = float(max(sides[1], sides[0] / _WIDE)) * _AIR
-    document.set_modelspace_vport(height or 1.0, center=tuple(middle.tolist()))
+    height = height or 2.0 * _ALONE
+    document.set_modelspace_vport(height, center=tuple(middle.tolist()))
+    if isinstance(obj, Survey) or (isinstance(obj, Features) and obj.kind == "points"):
+        document.header["$PDMODE"] = _CROSS
+        document.header["$PDSIZE"] = _choose_height(points)
+    mm_per_unit = min(_PAPER[1] / height, _FARTHEST / max(float(np.abs(middle).max()), 1.0))
+    west, south = middle - np.array(_PAPER) / mm_per_unit / 2
+    set_paper(document, _PAPER, (float(west), float(south)), mm_per_unit, unit)
 
 
 def _count_handles(head: str, writer: EntityWriter) -> str:
@@ -354,13 +372,18 @@ def _add_points(
     writer.add_points("POINTS", points, list(stated))
     if not labelling.is_wanted:
         return
-    width, depth = np.ptp(points[:, :2], axis=0).tolist()
-    distance = max(width, depth) / max(len(points), 1) ** 0.5 if max(width, depth) > 0 else 5.0
-    height = labelling.height or float(f"{distance * _SHARE:.2g}")
+    height = labelling.height or _choose_height(points)
     found["elevation"] = ["" if z != z else f"{z:.2f}" for z in elevations.tolist()]
     for k, (name, layer) in enumerate(_LABELS.items()):
         beside = np.array([height * 0.5, height * (0.5 - 1.5 * k), 0.0])
         writer.add_texts(layer, points + beside, found[name], height)
+
+
+def _choose_height(points: AnyArray) -> float:
+    """Return how high labels of points are, and marks of points, in CRS units."""
+    extent = float(np.ptp(points[:, :2], axis=0).max())
+    distance = extent / len(points) ** 0.5 if extent > 0 else _ALONE
+    return float(f"{distance * _SHARE:.2g}")
 
 
 def _find_texts(texts: dict[str, AnyArray], name: str, count: int) -> list[str]:

@@ -10,7 +10,7 @@ import numpy as np
 from ....base import optional
 from ....base.atomic import replacing
 from ....base.crs import FOOT, METRE, US_SURVEY_FOOT
-from ...drawing import fixed_dxf_dates
+from ...drawing import fixed_dxf_dates, set_paper
 from .canvas import HATCH_SPACING, PLAIN
 from .lettering import CAPITAL
 
@@ -54,19 +54,25 @@ class Model(NamedTuple):
 
 
 def write_drawing(
-    path: Path, drawers: Sequence[Callable[[Drawable], None]], width: float, model: Model
+    path: Path,
+    drawers: Sequence[Callable[[Drawable], None]],
+    size: tuple[float, float],
+    model: Model,
 ) -> None:
-    """Write sheets of a width in millimetres, each drawn by a function, from left to right."""
+    """Write sheets of a size in millimetres, each drawn by a function, from left to right."""
     ezdxf = optional.load("ezdxf", "Sheets as a drawing")
     with fixed_dxf_dates():
         document = ezdxf.new("R2010")
         document.header["$INSUNITS"] = _CODES.get(model.unit, 0)
         document.header["$MEASUREMENT"] = int(model.unit not in (FOOT, US_SURVEY_FOOT))
+        step = size[0] + _SPACE
+        paper = (len(drawers) * step - _SPACE, size[1])
+        set_paper(document, paper, model.origin, model.mm_per_unit, model.unit)
         document.styles.add(_STYLE, font="arial.ttf")
         for name, value in model.properties.items():
             document.header.custom_vars.append(name, value)
         for number, draw in enumerate(drawers):
-            draw(DxfCanvas(document, number * (width + _SPACE), model))
+            draw(DxfCanvas(document, number * step, model))
         zoom = optional.load("ezdxf.zoom", "Sheets as a drawing")
         zoom.extents(document.modelspace())
         stream = io.StringIO(newline="\n")

@@ -194,7 +194,7 @@ class Document(ABC):
         if files[0].suffix.lower() != ".dxf":
             return write_sheets(files, self._draw(), self.paper, dpi, self._title)
         drawers = [partial(self._draw_on, number) for number in range(len(self))]
-        write_drawing(files[0], drawers, self.paper[0], self._find_model())
+        write_drawing(files[0], drawers, self.paper, self._find_model())
         return files
 
     def _draw(self) -> Iterator[Canvas]:

@@ -7,6 +7,7 @@ import re
 import numpy as np
 import pytest
 from support.mesh_files import assert_same_mesh
+from support.plain_readers import parse_12da
 from support.surfaces import hills
 
 import tinsmith as ts
@@ -60,15 +61,6 @@ def read(tmp_path, text, name="a.12da", **options):
     return ts.read(path, **options)
 
 
-def parse_plainly(text):
-    """Return names, points and triangles from 0 of a tin, and strings, of a file that we wrote."""
-    blocks = dict(re.findall(r"(points|triangles) \{\n([^}]*)\}", text))
-    points = np.array(blocks["points"].split(), float).reshape(-1, 3)
-    triangles = np.array(blocks["triangles"].split(), int).reshape(-1, 3) - 1
-    strings = re.findall(r'string super \{\n  name "([^"]*)"\n.*?data_3d \{\n([^}]*)\}', text, re.S)
-    return points, triangles, strings
-
-
 def test_a_tin_comes_back_with_its_lines(tmp_path):
     tin = hills().replace(elevation_unit="m", crs=CRS)
     back = ts.read(ts.write(tin, tmp_path / "a.12da"), crs=CRS, unit="m")
@@ -94,7 +86,7 @@ def test_constrained_edges_of_no_line_come_back(tmp_path):
 def test_our_tin_has_clockwise_triangles_and_its_lines_as_strings(tmp_path):
     tin = hills().replace(elevation_unit="m", crs=CRS)
     text = ts.write(tin, tmp_path / "a.12da", name='the "new" one').read_text()
-    points, triangles, strings = parse_plainly(text)
+    points, triangles, strings = parse_12da(text)
     assert np.array_equal(points, tin.points)
     assert np.array_equal(triangles[:, [0, 2, 1]], tin.triangles)
     a, b, c = (points[triangles[:, k], :2] for k in range(3))

@@ -7,6 +7,7 @@ import re
 import numpy as np
 import pytest
 from support.mesh_files import read_text, write_and_read
+from support.plain_readers import parse_adcirc
 from support.surfaces import hills
 
 import tinsmith as ts
@@ -23,27 +24,6 @@ def read(tmp_path, text, name="fort.14"):
     return read_text(tmp_path / name, text)
 
 
-def parse_plainly(text):
-    """Read nodes, elements and boundaries of a file with remarks, word by word."""
-    rows = [line.split() for line in text.splitlines()]
-    n_elements, n_nodes = map(int, rows[1])
-    nodes = np.array(rows[2 : 2 + n_nodes], float)
-    elements = np.array(rows[2 + n_nodes : 2 + n_nodes + n_elements], int)
-    at = 2 + n_nodes + n_elements
-    parts = []
-    for _ in range(2):
-        count, total, at = int(rows[at][0]), int(rows[at + 1][0]), at + 2
-        part = []
-        for _ in range(count):
-            length, kind = map(int, rows[at][:2])
-            part.append((kind, [int(row[0]) for row in rows[at + 1 : at + 1 + length]]))
-            at += 1 + length
-        assert sum(len(one) for _, one in part) == total
-        parts.append(part)
-    assert at == len(rows)
-    return nodes, elements, parts
-
-
 @pytest.mark.parametrize("name", ["fort.14", "hgrid.gr3"])
 def test_a_tin_comes_back_to_the_last_bit(tmp_path, name):
     tin = hills()
@@ -54,7 +34,7 @@ def test_a_tin_comes_back_to_the_last_bit(tmp_path, name):
 
 def test_what_another_program_reads_of_our_file(tmp_path):
     tin = hills(60, lines=False)
-    nodes, elements, (opened, land) = parse_plainly(ts.write(tin, tmp_path / "a.14").read_text())
+    nodes, elements, (opened, land) = parse_adcirc(ts.write(tin, tmp_path / "a.14").read_text())
     assert nodes[:, 0].tolist() == list(range(1, len(tin.points) + 1))
     assert np.array_equal(nodes[:, 1:], tin.points * [1, 1, -1])
     assert (elements[:, 1] == 3).all()
@@ -71,7 +51,7 @@ def test_a_hole_is_an_island_whose_ring_is_not_closed(tmp_path):
     hole = [[1, 1], [2, 1], [2, 2], [1, 2]]
     tin = ts.triangulate(points, holes=[hole])
     path = ts.write(tin, tmp_path / "a.14")
-    _, _, (_, land) = parse_plainly(path.read_text())
+    _, _, (_, land) = parse_adcirc(path.read_text())
     assert [(kind, len(ring)) for kind, ring in land] == [(0, 13), (1, 4)]
     back = ts.read(path)
     assert back.lines.names == ("land 0", "land 1")
@@ -86,7 +66,7 @@ def test_open_and_land_boundaries_are_lines_and_come_back(tmp_path):
     assert tin.lines.kinds == ("boundary", "boundary")
     assert [chain.tolist() for chain in tin.lines.chains()] == [[0, 1], [2, 3, 0]]
     path = ts.write(tin, tmp_path / "again.14")
-    _, _, (opened, land) = parse_plainly(path.read_text())
+    _, _, (opened, land) = parse_adcirc(path.read_text())
     assert opened == [(0, [1, 2])]
     assert land == [(20, [3, 4, 1]), (0, [2, 3])]  # what no line covers is land
     again = ts.read(path)
@@ -95,7 +75,7 @@ def test_open_and_land_boundaries_are_lines_and_come_back(tmp_path):
 
 def test_boundaries_run_with_the_surface_on_their_left(tmp_path):
     tin = read(tmp_path, MESH + "1\n3\n3\n1\n4\n3\n0\n0\n")
-    _, _, (opened, land) = parse_plainly(ts.write(tin, tmp_path / "again.14").read_text())
+    _, _, (opened, land) = parse_adcirc(ts.write(tin, tmp_path / "again.14").read_text())
     assert opened == [(0, [3, 4, 1])]
     assert land == [(0, [1, 2, 3])]
 
@@ -103,7 +83,7 @@ def test_boundaries_run_with_the_surface_on_their_left(tmp_path):
 def test_boundaries_by_name_reach_the_file_from_any_tin(tmp_path):
     sea = ts.Breakline([[0, 0, 5], [4, 0, 6]], name="open")
     tin = ts.triangulate(ts.Survey(points=SQUARE, breaklines=[sea]))
-    _, _, (opened, land) = parse_plainly(ts.write(tin, tmp_path / "a.14").read_text())
+    _, _, (opened, land) = parse_adcirc(ts.write(tin, tmp_path / "a.14").read_text())
     assert opened == [(0, [1, 2])]
     assert land == [(0, [2, 3, 4, 1])]
 
