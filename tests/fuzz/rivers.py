@@ -270,7 +270,8 @@ def examine_water(case: Case) -> str:
     axis = _find_centreline(made) if line is None else shapely.linestrings(line)
     notes = " ".join(made.report.notes)
     is_along = "flows along the centreline" in notes
-    _require_fall(made, inside, axis, is_along=is_along)
+    is_whole = line is not None or inside.equals(water)
+    _require_fall(made, inside, axis, is_along=is_along, is_whole=is_whole)
     _require_level(made, inside, axis, np.array(case["places"]))
     return "flattened" if line is not None else "medial axis"
 
@@ -308,12 +309,19 @@ def _require_ground(ground: ts.TIN, made: ts.TIN, water: Any, case: Case) -> Non
         assert all(tuple(one) in vertices for one in ground.points[stays].tolist())
 
 
-def _require_fall(made: ts.TIN, water: Any, axis: Any, *, is_along: bool) -> None:
-    """The level is a function of the nearest station that never rises downstream."""
+def _require_fall(made: ts.TIN, water: Any, axis: Any, *, is_along: bool, is_whole: bool) -> None:
+    """The level is a function of the nearest station that never rises downstream.
+
+    A medial axis that leaves the surface goes on beyond the centreline of the TIN, which is not
+    whole then: what is nearest to an end of that one has stations of which nothing is known.
+    """
     xy = made.points[:, :2]
     wet = shapely.distance(water, shapely.points(xy)) <= 1e-7
     stations = shapely.line_locate_point(axis, shapely.points(xy[wet]))
     z = made.points[wet, 2]
+    if not is_whole:
+        known = (stations > 1e-6) & (stations < axis.length - 1e-6)
+        stations, z = stations[known], z[known]
     order = np.lexsort((-z if is_along else z, stations))
     falls = np.diff(z[order]) * (1.0 if is_along else -1.0)
     steps = np.diff(stations[order])
