@@ -310,6 +310,19 @@ def difference(
     return Difference(surface, table, reference.notes, reference, sums, parts_of, detection)
 
 
+def subtract_skirt(ground: TIN, skirt: TIN, share: float) -> TIN:
+    """Return a surface around a pad less the ground, as the TIN of :func:`difference`.
+
+    Where the surface has walls that are thinner than coordinates can tell, volumes may be off by a
+    share of the area times the largest difference: for what is proven in another way.
+    """
+    measured = measure(ground, skirt, None, None, None, Progress(None), "Differences")
+    second = measured.other or Surface(skirt.points, skirt.triangles)
+    sums = dict(zip(_kernel.SUMS, measured.sums[0].tolist(), strict=True))
+    holds = _make_holder(ground, skirt)
+    return subtract(measured.first, second, sums, holds, measured.reference, share=share)
+
+
 def _make_holder(tin: TIN, other: TIN) -> Callable[[Any], Any]:
     """Return a function that tells whether both surfaces hold places."""
     return lambda xy: (tin.locate(xy) >= 0) & (other.locate(xy) >= 0)

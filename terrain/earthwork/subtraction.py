@@ -49,12 +49,15 @@ def subtract(
     holds: Callable[[Any], Any],
     reference: Reference,
     detection: Detection | None = None,
+    *,
+    share: float = 0.0,
 ) -> TIN:
     """Return the second surface less the first as a TIN, where both are.
 
     ``sums`` are those of the kernel of the same surfaces, which the volumes of the TIN must be;
     ``holds`` tells whether both surfaces hold places, (k, 2). The TIN is cut where the difference
-    is 0, and as large as the level of ``detection``.
+    is 0, and as large as the level of ``detection``. Where no TIN has these volumes, the nearest
+    counts if it is off by no more than a ``share`` of the area times the largest difference.
 
     Raises PointsError if they do not overlap, or only in what is thinner than coordinates can tell.
     """
@@ -70,7 +73,20 @@ def subtract(
     triangles, cells = fan_out(made.offsets, made.corners)
     slack = _measure_rounding(*trimmed, made.vertices, triangles, made.triangles[cells])
     given = _cut(made.vertices, triangles, detection)
-    return _choose_surface(_make_sound(*given, holds, detection), reference, sums, slack)
+    found = _make_sound(*given, holds, detection)
+    return _choose_surface(found, reference, sums, slack, share=share)
+
+
+def overlay_heights(first: Surface, second: Surface) -> _Mesh:
+    """Return the triangles of the overlay, with the second surface less the first, for sums.
+
+    They are cut where that is 0, and as they are rounded: some are turned over by it.
+
+    Raises PointsError if the overlay has too many vertices.
+    """
+    made = _overlay(first, second)
+    triangles, _ = fan_out(made.offsets, made.corners)
+    return cut_at_zero(made.vertices, triangles)
 
 
 def _cut(points: Float64Array, triangles: Int32Array, detection: Detection | None) -> _Mesh:
@@ -85,21 +101,29 @@ def _cut(points: Float64Array, triangles: Int32Array, detection: Detection | Non
 
 
 def _choose_surface(
-    candidates: Iterator[_Mesh], reference: Reference, sums: Mapping[str, float], slack: float
+    candidates: Iterator[_Mesh],
+    reference: Reference,
+    sums: Mapping[str, float],
+    slack: float,
+    *,
+    share: float,
 ) -> TIN:
-    """Return the first mesh whose volumes are those of the surfaces.
+    """Return the first mesh whose volumes are those of the surfaces, else the nearest in a share.
 
     Raises PointsError if there is none: rounding has moved a wall, or left nothing.
     """
-    least = np.inf
+    least, nearest = np.inf, None
+    most = sums["area"] * max(sums["highest"], -sums["lowest"])
     for mesh in candidates:
         surface = as_mesh(*mesh, crs=reference.crs, elevation_unit=reference.elevation_unit)
         found = _sum_classes(surface)
         apart = max(abs(found[name] - sums[name]) for name in ("cut", "fill"))
-        most = max(sums["highest"], -sums["lowest"])
-        if apart <= _SHARE_OF_VOLUME * sums["area"] * most + _ROUNDINGS * slack:
+        if apart <= _SHARE_OF_VOLUME * most + _ROUNDINGS * slack:
             return surface
-        least = min(least, apart)
+        if apart < least:
+            least, nearest = apart, surface
+    if nearest is not None and least <= share * most:
+        return nearest
     if np.isfinite(least):
         raise PointsError(
             "The surfaces have walls that are thinner than coordinates can tell: the volume of "

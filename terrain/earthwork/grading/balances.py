@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from ....base.checks import as_number
-from ....base.errors import PointsError
+from ....base.errors import LinesError, PointsError
 from ....base.notes import join_notes
 from ....base.products import product
 from ....base.progress import Progress
@@ -22,6 +22,7 @@ from .pads import make_pad, read_polygon
 from .pasting import join_surfaces
 from .patches import make_patch, require_on_ground
 from .seams import find_area
+from .slopes import take_near
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -40,6 +41,8 @@ _NEAR = 1e-7
 _NEAR_LOST = 1e-4
 """The same where the ground ends before slopes that start higher, or lower, do."""
 _MOST_TRIALS = 60
+_MARGIN = 0.5
+"""Of the extent of pad, slopes and regions: so much farther reaches the ground of a trial."""
 _LEAST_MOVING = 0.1
 """Of the area of a pad: so much of it moves at least where regions and their slopes are fixed."""
 _SUMS = ("cut", "fill", "cut_area", "fill_area")
@@ -128,17 +131,36 @@ class _Trials(NamedTuple):
     surplus: float
     fixed: list[Fixed]
 
-    def attempt(self, pad: Pad) -> Trial:
-        """Measure a pad and its slopes."""
+    def attempt(self, pad: Pad, *, is_whole: bool = False) -> Trial:
+        """Measure a pad and its slopes; with fixed regions in the whole ground if that is asked."""
         tin, (ratios, reference, area) = self.tin, self.site
         patch = make_patch(tin, pad, ratios, reference.up, area, Progress(None))
         if self.fixed:
-            return self._hold(patch, pad)
+            return self._hold(patch, pad) if is_whole else self._hold_near(patch, pad)
         table = volume(tin, patch)
         sums = {name: float(table[name][0]) for name in _SUMS}
         areas = self.shrink * sums["cut_area"] + sums["fill_area"]
         areas += float(table["unchanged_area"][0])  # of which any rise makes fill
         return self._make_trial(patch, sums, areas, tuple(table.notes))
+
+    def _hold_near(self, patch: TIN, pad: Pad) -> Trial:
+        """Measure it with the fixed regions, of the ground alone that is near to all of them.
+
+        Slopes that do not end there are measured in the whole ground.
+        """
+        import shapely
+
+        shapes = [find_area(patch), *(one.polygon for one in self.fixed)]
+        low, high = np.reshape(shapely.total_bounds(shapes), (2, 2))
+        margin = _MARGIN * float((high - low).max())
+        near = take_near(self.tin, low - margin, high + margin)
+        if len(near.triangles) < len(self.tin.triangles):
+            site = self.site._replace(area=find_area(near))
+            try:
+                return self._replace(tin=near, site=site)._hold(patch, pad)
+            except (PointsError, LinesError):
+                pass
+        return self._hold(patch, pad)
 
     def _hold(self, patch: TIN, pad: Pad) -> Trial:
         """Measure it with the fixed regions: only where nothing of them is does the pad rise."""
@@ -249,6 +271,8 @@ def balance(
     trying = Progress(done.stage(0.0, 0.7))
     least = float(polygon.area) * reference.up * (_LEAST_MOVING if regions else 1.0)
     level, found = _find_root(attempt, start.level, least, trying)
+    if regions:
+        found = trials.attempt(start._replace(level=level), is_whole=True)
     found = found._replace(notes=(*found.notes, *told))
     graded = found.surface
     if not regions:

@@ -16,9 +16,9 @@ from ....base.results import Features
 from ....base.sentences import coordinate, height
 from ....tin import TIN
 from ....tin.constraints import gather_rings_of_regions
-from ...surface import double_areas
+from ...surface import Surface, double_areas
 from ..clipping import clip
-from ..differences import difference
+from ..subtraction import overlay_heights
 from .distances import measure_distances
 from .edge_cells import FACET
 from .pasting import join_surfaces
@@ -438,10 +438,11 @@ def measure_held(
     import shapely
 
     bounds = np.reshape(shapely.union(works, held.own).bounds, (2, 2))
-    found = difference(take_near(tin, *bounds), take_near(held.surface, *bounds)).tin
-    area = double_areas(found.points, found.triangles) / 2
-    rise = found.points[found.triangles, 2].mean(axis=1)
-    middles = found.points[found.triangles, :2].mean(axis=1).T
+    near = [take_near(one, *bounds) for one in (tin, held.surface)]
+    points, triangles = overlay_heights(*(Surface(one.points, one.triangles) for one in near))
+    area = double_areas(points, triangles) / 2
+    rise = points[triangles, 2].mean(axis=1)
+    middles = points[triangles, :2].mean(axis=1).T
     is_own, is_works, is_kept = (_contain(one, middles) for one in (held.own, works, held.kept))
     is_site = (is_works | is_own) & ~is_kept
     return _sum(area, rise, is_site, up), _sum(area, rise, is_works & ~is_own, up)

@@ -9,7 +9,7 @@ import numpy as np
 from ....base.errors import PointsError
 from ....base.sentences import coordinate
 from ....tin import TIN, topology
-from ..differences import difference
+from ..differences import subtract_skirt
 from ..zones import classify, join_segments, number_zones
 from .seams import measure_tolerance
 
@@ -91,17 +91,18 @@ def find_slope(
 
 
 def meet_ground(
-    tin: TIN, skirt: TIN, pad: Any, sign: float, least: float = 0.0
+    tin: TIN, skirt: TIN, pad: Any, sign: float, least: float = 0.0, *, share: float = 0.0
 ) -> tuple[Slope, Float64Array]:
     """Return where a surface around a pad is cut into the ground, and where it ends before it.
 
     ``sign`` is -1 of cuts, 1 of fills, ``pad`` a polygon of shapely. Parts that are off the ground
     by no more than ``least`` along its edge are left. The ends, (k, 2), are middles
-    of edges at the outline of the surface, off the pad.
+    of edges at the outline of the surface, off the pad. Volumes between both may be off by a
+    ``share``, as those of :func:`subtract_skirt`.
     """
     tolerance = measure_tolerance(tin.points)
     xy = skirt.points[:, :2]
-    found = difference(take_near(tin, xy.min(axis=0), xy.max(axis=0)), skirt).tin
+    found = subtract_skirt(take_near(tin, xy.min(axis=0), xy.max(axis=0)), skirt, share)
     is_made = _find_made(found, pad, sign, tolerance, least=least)
     start, end = _find_outline(found, is_made, only_outer=True)
     middles = (found.points[start, :2] + found.points[end, :2]) / 2

@@ -36,6 +36,9 @@ if TYPE_CHECKING:
 
 _SIGNS = {"cut": 1.0, "fill": -1.0}
 _SAMPLES = 65
+_SHARE_OF_VOLUME = 1e-5
+"""Of the area times the largest difference: so much the side slopes less the ground may be off, by
+steps at bends that are thinner than coordinates. :mod:`.proof` requires what is designed."""
 _SHOWN = 5
 _CHECKS = 9
 """Places on an edge at which is seen whether it is made."""
@@ -170,7 +173,9 @@ class Layouts:
             skirt = self._build_skirt(rays, kind, reach, bed)
             if skirt is None:
                 raise LinesError("The corridor has no side slopes: its axis turns too sharply.")
-            slope, open_ends = meet_ground(self.ground, skirt.tin, bed.area, -sign)
+            slope, open_ends = meet_ground(
+                self.ground, skirt.tin, bed.area, -sign, share=_SHARE_OF_VOLUME
+            )
             skirts.append(skirt)
             slopes.append(slope)
             import shapely

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 import tinsmith as ts
+from tinsmith.terrain.earthwork.grading import balances
 
 shapely = pytest.importorskip("shapely")
 CORNERS = np.array([[0.0, 0], [120, 0], [120, 120], [0, 120]])
@@ -239,3 +240,40 @@ def test_a_pad_with_a_corner_twice():
     once = ts.grade(plane(), PAD, 4.0, **HOW)
     twice = ts.grade(plane(), [PAD[0], *PAD, PAD[0]], 4.0, **HOW)
     assert (once.points == twice.points).all()
+
+
+def large_hills(seed, origin):
+    """Hills that reach far beyond the pad, so that trials take a part of them."""
+    rng = np.random.default_rng(seed)
+    xy = np.vstack([rng.uniform(-400, 600, (600, 2)), [[-500, -500], [700, -500], [700, 700]]])
+    z = xy @ RISE + np.sin(xy[:, 0] / 15) * 0.6
+    return ts.triangulate(np.column_stack([xy + origin, z]))
+
+
+def test_trials_on_the_ground_nearby_find_what_those_on_all_of_it_find(monkeypatch):
+    origin = 500_000.0, 4_000_000.0
+    ground = large_hills(5, origin)
+    moved = np.array(TREE) + origin, at(np.array(HOUSE) + origin, 5.0)
+    taken = []
+    take = balances.take_near
+    monkeypatch.setattr(balances, "take_near", lambda *how: taken.append(take(*how)) or taken[-1])
+    made = ts.balance(ground, np.add(PAD, origin), fixed=moved, **HOW)
+    assert taken
+    assert all(len(one.triangles) < 0.2 * len(ground.triangles) for one in taken)
+    monkeypatch.setattr(balances, "_MARGIN", 1e3)
+    whole = ts.balance(ground, np.add(PAD, origin), fixed=moved, **HOW)
+    for name, column in whole.table.columns.items():
+        most = 1e-6 if name == "balance" else 0.0
+        assert made.table[name] == pytest.approx(column, rel=1e-9, abs=most), name
+    assert made.tin.points == pytest.approx(whole.tin.points, abs=1e-7)
+    assert made.notes == whole.notes
+
+
+def test_slopes_that_do_not_end_nearby_are_measured_on_all_of_the_ground(monkeypatch):
+    """A region far above falling ground: its fill reaches farther than the margin."""
+    ground = large_hills(5, (0.0, 0.0))
+    monkeypatch.setattr(balances, "_MARGIN", 0.01)
+    made = ts.balance(ground, PAD, fixed=[at(HOUSE, 9.0)], **HOW)
+    table = ts.volume(ground, made.tin)
+    assert float(table["cut"][0]) == pytest.approx(float(table["fill"][0]), rel=1e-6)
+    assert ts.check(made.tin).ok
