@@ -1,7 +1,10 @@
-"""Walls: two breaklines along one line, apart by the distance, between two grounds."""
+"""Walls: two breaklines along one line, or a line with columns, apart by the distance."""
 
 from __future__ import annotations
 
+from dataclasses import replace
+from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
 
 import numpy as np
@@ -59,7 +62,14 @@ def generate(rng: np.random.Generator) -> Case:
         "left": bool(rng.random() < 0.5),
         "turned": bool(rng.random() < 0.5),
         "first": bool(rng.random() < 0.5),
+        "columns": _draw_columns(rng),
     }
+
+
+def _draw_columns(rng: np.random.Generator) -> list[str]:
+    """Names of columns that give the elevations of the wall; none for two breaklines."""
+    drawn = [[], ["top", "foot"], ["top", "bottom"], ["top"], ["foot"], ["bottom"], ["Top", "FOOT"]]
+    return list(drawn[int(rng.integers(len(drawn)))]) if rng.random() < 0.5 else []
 
 
 def examine(case: Case) -> str:
@@ -77,6 +87,10 @@ def examine(case: Case) -> str:
         ts.Breakline(top, name="top"),
         ts.Breakline(foot[::-1] if case["turned"] else foot, name="foot"),
     ]
+    if case["columns"]:
+        lines = _read_columns(case, top, foot)
+        if isinstance(lines, str):
+            return lines
     try:
         made = ts.triangulate(
             ground, breaklines=lines if case["first"] else lines[::-1], walls=case["walls"]
@@ -91,6 +105,29 @@ def examine(case: Case) -> str:
     _require_apart(case, made, path)
     told = _require_side(case, made, path)
     return "ring" if is_ring else told
+
+
+def _read_columns(case: Case, top: Any, foot: Any) -> Any:
+    """Return the breaklines of a file whose line has columns, or what is refused, rightly.
+
+    A column gives one elevation of the whole line: what is not in a column is that of the line.
+    """
+    level = {"top": float(top[:, 2].max()), "foot": case["base"], "bottom": case["base"]}
+    names = [name.lower() for name in case["columns"]]
+    coords = {("top",): foot, ("foot",): top, ("bottom",): top}.get(tuple(names), top[:, :2])
+    given = {name: np.array([level[name.lower()]]) for name in case["columns"]}
+    line = ts.Features.of_lines(coords, [0, len(coords)], columns={**given, "name": ["top"]})
+    with TemporaryDirectory() as folder:
+        path = ts.write(line, Path(folder) / "wall.gpkg")
+        found = ts.read_lines(path, walls=True)
+    assert len(found) == 2, found
+    upper, lower = (np.asarray(one.coords) for one in found)
+    whole = np.column_stack([top[:, :2], np.full(len(top), level["top"])])
+    assert np.array_equal(upper, whole if "top" in names else top), "another top"
+    assert np.array_equal(lower, foot), "another foot"
+    if "top" in names and len(set(case["rise"])) > 1:
+        return "columns: a level top"  # and no end on the ground, as other checks ask
+    return [replace(found[0], name="top"), replace(found[1], name="foot")]
 
 
 def _lie_left(path: Any, xy: Any, is_ring: bool) -> Any:
