@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from abc import abstractmethod
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from ....base import optional
 from ....base.checks import as_number
@@ -48,7 +49,7 @@ from .legend import draw_legend, draw_scales
 
 if TYPE_CHECKING:
     import datetime as dt
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Iterator, Mapping, Sequence
 
     from numpy.typing import ArrayLike
 
@@ -56,7 +57,6 @@ if TYPE_CHECKING:
     from ....tin import TIN
     from ..paper import Caption, Drawable, PaperLike
     from .arrangement import Drawing
-    from .cells import Measures
 
 _UNTITLED = "Cross sections"
 MOST_EXAGGERATED = 100.0
@@ -81,7 +81,55 @@ _LAYERS = {
 """Layers of a drawing by what is drawn; surfaces have their own."""
 
 
-class SectionSheets(Document):
+class ScaledSheets(Document):
+    """What is drawn along lines, elevations exaggerated, on sheets of paper."""
+
+    _suffixes = SHEET_SUFFIXES
+    _along: ClassVar[str]
+    """What the scale is of, beside that of elevations."""
+
+    def __init__(
+        self, drawing: Any, exaggeration: float, caption: Caption, notes: Sequence[str]
+    ) -> None:
+        super().__init__(drawing.layout.paper, caption.title, notes)
+        self._drawing = drawing
+        self._caption = caption
+        self.scale: float = drawing.scale.denominator
+        self.scale_text: str = drawing.scale.text
+        self.exaggeration = exaggeration
+
+    def __len__(self) -> int:
+        return len(self._drawing.sheets)
+
+    @abstractmethod
+    def _draw_legend(self, canvas: Drawable) -> bool: ...
+
+    @abstractmethod
+    def _draw_cells(self, number: int, canvas: Drawable) -> Iterator[bool]: ...
+
+    def _find_model(self) -> Model:
+        """Return what drawings need to know: each surface has a layer of its own name."""
+        measures = self._drawing.measures
+        named = name_layers(measures.names, sorted(set(_LAYERS.values())))
+        layers = {f"surface{number}": layer for number, layer in enumerate(named, 1)}
+        properties = {"Title": self._caption.title, "Scale": self._caption.scale}
+        return Model(self._caption.unit, measures.along, _LAYERS | layers, properties)
+
+    def _draw_sheet(self, number: int, canvas: Drawable) -> NoRoom:
+        drawn, layout = self._drawing, self._drawing.layout
+        caption = self._caption._replace(sheet=f"Sheet {number + 1} of {len(self)}")
+        draw_border(canvas, layout)
+        up = describe_elevation_scale(drawn.scale, self.exaggeration)
+        scales = {self._along: drawn.scale.text, "Elevations": up}
+        have_room = [
+            self._draw_legend(canvas),
+            draw_scales(canvas, layout, drawn.measures.along, scales, caption.unit),
+            *self._draw_cells(number, canvas),
+        ]
+        return join_no_room([draw_title(canvas, layout, caption), NoRoom(not all(have_room))])
+
+
+class SectionSheets(ScaledSheets):
     """Cross sections on sheets of paper, ready to be written; of :func:`tinsmith.section_sheets`.
 
     Attributes
@@ -110,53 +158,28 @@ class SectionSheets(Document):
     <SectionSheets: 4 sections on 1 sheet, A3 portrait, 1:100>
     """
 
-    _suffixes = SHEET_SUFFIXES
     _what = "section sheets"
+    _along = "Offsets"
+    _drawing: Drawing
 
     def __init__(
         self, drawing: Drawing, exaggeration: float, caption: Caption, notes: Sequence[str]
     ) -> None:
-        super().__init__(drawing.layout.paper, caption.title, notes)
-        self._drawing = drawing
-        self._caption = caption
-        self.scale = drawing.scale.denominator
-        self.scale_text = drawing.scale.text
-        self.exaggeration = exaggeration
+        super().__init__(drawing, exaggeration, caption, notes)
         self.sections = len(drawing.sections)
-
-    def __len__(self) -> int:
-        return len(self._drawing.sheets)
 
     def __repr__(self) -> str:
         what = f"{counted(self.sections, 'section')} on {counted(len(self), 'sheet')}"
         return f"<SectionSheets: {what}, {self.paper_name}, {self.scale_text}>"
 
-    def _find_model(self) -> Model:
-        """Return what drawings need to know: each surface has a layer of its own name."""
-        return make_model(self._caption, self._drawing.measures)
+    def _draw_legend(self, canvas: Drawable) -> bool:
+        return draw_legend(canvas, self._drawing.layout, self._drawing.measures.names)
 
-    def _draw_sheet(self, number: int, canvas: Drawable) -> NoRoom:
-        drawn, layout = self._drawing, self._drawing.layout
-        caption = self._caption._replace(sheet=f"Sheet {number + 1} of {len(self)}")
-        draw_border(canvas, layout)
-        up = describe_elevation_scale(drawn.scale, self.exaggeration)
-        scales = {"Offsets": drawn.scale.text, "Elevations": up}
-        have_room = [
-            draw_legend(canvas, layout, drawn.measures.names),
-            draw_scales(canvas, layout, drawn.measures.along, scales, caption.unit),
-        ]
+    def _draw_cells(self, number: int, canvas: Drawable) -> Iterator[bool]:
+        drawn = self._drawing
         for spot in drawn.sheets[number]:
             cell = Cell(canvas, drawn.measures, drawn.sections[spot.section])
-            have_room.append(cell.draw(spot.place))
-        return join_no_room([draw_title(canvas, layout, caption), NoRoom(not all(have_room))])
-
-
-def make_model(caption: Caption, measures: Measures) -> Model:
-    """Return how sheets lie in a drawing: each surface on a layer of its own name."""
-    named = name_layers(measures.names, sorted(set(_LAYERS.values())))
-    layers = {f"surface{number}": layer for number, layer in enumerate(named, 1)}
-    properties = {"Title": caption.title, "Scale": caption.scale}
-    return Model(caption.unit, measures.along, _LAYERS | layers, properties)
+            yield cell.draw(spot.place)
 
 
 @product

@@ -14,10 +14,9 @@ from ....base.errors import LinesError, OptionError
 from ....base.products import product
 from ....base.sentences import counted
 from ...sections import Alignment, VerticalAlignment, as_surfaces, profile
-from ..paper import PURPOSE, SHEET_SUFFIXES, Document, NoRoom, clean_text, join_no_room
+from ..paper import PURPOSE, clean_text
 from ..scales import (
     Scale,
-    describe_elevation_scale,
     describe_factor,
     find_ground_unit,
     measure_scale_factor,
@@ -28,25 +27,23 @@ from ..title_block import (
     describe_crs,
     describe_factor_here,
     describe_missing_letters,
-    draw_border,
-    draw_title,
 )
 from .cells import DATUM_PEN, GRID_PEN, Measures, Section, choose_measures, find_pen
-from .cross_sections import MOST_EXAGGERATED, make_model
+from .cross_sections import MOST_EXAGGERATED, ScaledSheets
 from .gathering import Units, describe_elevations, describe_points, name_surfaces
-from .legend import draw_samples, draw_scales
+from .legend import draw_samples
 from .profile_cells import Gradient, ProfileCell, list_gradients
 
 if TYPE_CHECKING:
     import datetime as dt
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Iterator, Mapping, Sequence
 
     from ....base.arrays import Float64Array
     from ....base.crs import Unit, UnitLike
     from ....base.results import Table
     from ....tin import TIN
     from ...sections import Surfaces
-    from ..paper import Caption, Drawable, Layout, Model, PaperLike
+    from ..paper import Drawable, Layout, PaperLike
 
 _UNTITLED = "Long profile"
 _CHORD = 1e-4
@@ -100,13 +97,13 @@ class _Request(NamedTuple):
 
 class _Drawing(NamedTuple):
     course: _Course
-    parts: tuple[tuple[Section, Measures], ...]
-    """Of each sheet."""
+    measures: Measures
+    sheets: tuple[tuple[Section, Measures], ...]
     layout: Layout
     scale: Scale
 
 
-class ProfileSheets(Document):
+class ProfileSheets(ScaledSheets):
     """A long profile on sheets of paper, ready to be written; of :func:`tinsmith.profile_sheets`.
 
     Attributes
@@ -131,50 +128,26 @@ class ProfileSheets(Document):
     <ProfileSheets: 1 sheet, A3 landscape, 1:1000>
     """
 
-    _suffixes = SHEET_SUFFIXES
     _what = "a long profile"
-
-    def __init__(
-        self, drawing: _Drawing, exaggeration: float, caption: Caption, notes: Sequence[str]
-    ) -> None:
-        super().__init__(drawing.layout.paper, caption.title, notes)
-        self._drawing = drawing
-        self._caption = caption
-        self.scale = drawing.scale.denominator
-        self.scale_text = drawing.scale.text
-        self.exaggeration = exaggeration
-
-    def __len__(self) -> int:
-        return len(self._drawing.parts)
+    _along = "Stations"
+    _drawing: _Drawing
 
     def __repr__(self) -> str:
         sheets = counted(len(self), "sheet")
         return f"<ProfileSheets: {sheets}, {self.paper_name}, {self.scale_text}>"
 
-    def _find_model(self) -> Model:
-        return make_model(self._caption, self._drawing.parts[0][1])
+    def _draw_legend(self, canvas: Drawable) -> bool:
+        drawn = self._drawing
+        lines = [(name, find_pen(k)) for k, name in enumerate(drawn.measures.names)]
+        lines += [("datum", DATUM_PEN), ("grid", GRID_PEN)]
+        return draw_samples(canvas, drawn.layout, lines)
 
-    def _draw_sheet(self, number: int, canvas: Drawable) -> NoRoom:
-        drawn, layout = self._drawing, self._drawing.layout
-        section, measures = drawn.parts[number]
-        caption = self._caption._replace(sheet=f"Sheet {number + 1} of {len(self)}")
-        draw_border(canvas, layout)
-        up = describe_elevation_scale(drawn.scale, self.exaggeration)
-        listed = [
-            *((name, find_pen(k)) for k, name in enumerate(measures.names)),
-            ("datum", DATUM_PEN),
-            ("grid", GRID_PEN),
-        ]
-        scales = {"Stations": drawn.scale.text, "Elevations": up}
-        cell = ProfileCell(canvas, measures, section, drawn.course.gradients, drawn.course.write)
-        frame = layout.frame
+    def _draw_cells(self, number: int, canvas: Drawable) -> Iterator[bool]:
+        course, frame = self._drawing.course, self._drawing.layout.frame
+        section, measures = self._drawing.sheets[number]
+        cell = ProfileCell(canvas, measures, section, course.gradients, course.write)
         air = max(0.0, frame.height - measures.measure_height(section)) / 2
-        have_room = [
-            draw_samples(canvas, layout, listed),
-            draw_scales(canvas, layout, measures.along, scales, caption.unit),
-            cell.draw((frame.xmin, frame.ymin + air)),
-        ]
-        return join_no_room([draw_title(canvas, layout, caption), NoRoom(not all(have_room))])
+        yield cell.draw((frame.xmin, frame.ymin + air))
 
 
 @product
@@ -373,4 +346,4 @@ def _divide(request: _Request, scale: Scale, *, most: int = _MOST_SHEETS) -> _Dr
         (section, measures._replace(reaches=ends))
         for section, ends in zip(sections, pairwise(cuts), strict=True)
     ]
-    return _Drawing(course, tuple(parts), layout, scale)
+    return _Drawing(course, measures, tuple(parts), layout, scale)
