@@ -63,11 +63,6 @@ class ColumnName:
     rank: int = 0
     """Of several names for one role, that with the least says it most clearly."""
 
-    @property
-    def is_coordinate(self) -> bool:
-        """Whether the name is one of a coordinate, and nothing in it is left open."""
-        return self.role in _COORDINATES and not self.doubt
-
 
 class _Word(NamedTuple):
     """A word or sign of a name: how it is compared, and where it stands."""

@@ -42,40 +42,40 @@ class ShownArea(NamedTuple):
 
 
 def choose_single(
-    ground: ShownArea, layouts: Sequence[Layout], scale: Scale | None, *, air: float = _AIR
+    ground: ShownArea, layouts: Sequence[Layout], scale: Scale | None
 ) -> tuple[Layout, Scale, Window]:
     """Return the window that shows all of the ground, north up.
 
     Of the layouts the one with the largest scale is taken, and of several the first; the scale is
-    by default the largest of the usual ones that fits, with ``air`` millimetres between the ground
-    and the frame. Raises OptionError if the scale is too large.
+    by default the largest of the usual ones that fits, with air between the ground and the frame.
+    Raises OptionError if the scale is too large.
     """
-    fits = [find_fitting(ground.bounds, one, ground.unit, air) for one in layouts]
+    fits = [find_fitting(ground.bounds, one, ground.unit) for one in layouts]
     best = int(np.argmin([fit.denominator for fit in fits]))
     layout, largest = layouts[best], fits[best]
     if scale is None:
         scale = largest
-    elif not _fits(ground.bounds, layout, scale.measure_unit(ground.unit), air):
+    elif not _fits(ground.bounds, layout, scale.measure_unit(ground.unit)):
         raise _describe_too_large(ground, layout, scale, largest)
     length = scale.measure_unit(ground.unit)
     return layout, scale, Window(ground.bounds.center, 0.0, length, layout.frame)
 
 
-def find_fitting(bounds: Bounds, layout: Layout, unit: Unit, air: float = _AIR) -> Scale:
+def find_fitting(bounds: Bounds, layout: Layout, unit: Unit) -> Scale:
     """Return the largest usual scale at which a rectangle fits the frame.
 
     Raises OptionError if there is none.
     """
     for scale in Scale.usual(unit):
-        if _fits(bounds, layout, scale.measure_unit(unit), air):
+        if _fits(bounds, layout, scale.measure_unit(unit)):
             return scale
     raise OptionError(
         "tin", f"{bounds.width:g} x {bounds.height:g} {unit.symbol}", "small enough for a sheet"
     )
 
 
-def _fits(bounds: Bounds, layout: Layout, length: float, air: float) -> bool:
-    room = layout.frame.width - 2 * air, layout.frame.height - 2 * air
+def _fits(bounds: Bounds, layout: Layout, length: float) -> bool:
+    room = layout.frame.width - 2 * _AIR, layout.frame.height - 2 * _AIR
     return bounds.width * length <= room[0] and bounds.height * length <= room[1]
 
 

@@ -56,7 +56,8 @@ def examine(case: Case) -> str:
     tree = Quadtree.over(tin.bounds, len(tin.points), case["node_points"])
     found = (
         (node, make_finest(tin.points, tin.triangles, tree.find_box(node), case["tolerance"]))
-        for node in Node(0, 0, 0).list_descendants(tree.levels)
+        for x, y in np.ndindex(1 << tree.levels, 1 << tree.levels)
+        for node in [Node(tree.levels, x, y)]
     )
     level = {node: mesh for node, mesh in found if mesh is not None}
     _require_joined(tree, level, tin, case["tolerance"])

@@ -10,6 +10,19 @@ from tinsmith.tin.tiling.skeleton import find_outermost, reduce_to_hull
 from tinsmith.tin.tiling.sources import NumberedPoints
 
 
+def find_limits(box):
+    """Return the southwestern and the northeastern corner, (2,) arrays."""
+    return np.array([box.xmin, box.ymin]), np.array([box.xmax, box.ymax])
+
+
+def may_meet(discs, box):
+    """Tell which discs may have a point in common with a closed box."""
+    low, high = find_limits(box)
+    gap = np.maximum(np.maximum(low - discs.centers, discs.centers - high), 0.0)
+    near = np.hypot(gap[:, 0], gap[:, 1]) * (1 - 2.0**-50) <= discs.radii
+    return near | np.isinf(discs.radii)
+
+
 class PointCells:
     """A source of points for tasks, with what it was asked."""
 
@@ -53,7 +66,7 @@ class PointCells:
         parts = [self.skeleton.choose(slice(0, 0))]
         for key, cell in self.cells.items():
             box = self.box_of(key)
-            if discs.may_meet(box).any():
+            if may_meet(discs, box).any():
                 parts.append(cell)
         return self._count(NumberedPoints.join(parts))
 

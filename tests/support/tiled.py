@@ -10,7 +10,7 @@ import tinsmith as ts
 from tinsmith.tin import _kernel
 from tinsmith.tin.building.inputs import gather_inputs
 from tinsmith.tin.building.options import BuildOptions
-from tinsmith.tin.tiling.boxes import are_in_box, find_limits, widen
+from tinsmith.tin.tiling.boxes import are_in_box, widen
 from tinsmith.tin.tiling.draping import (
     Draping,
     KnownTriangles,
@@ -23,7 +23,7 @@ from tinsmith.tin.tiling.local_triangulation import triangulate_box
 from tinsmith.tin.tiling.proof import TileTriangles, check_tiles
 from tinsmith.tin.tiling.sources import NumberedPoints
 
-from .point_cells import PointCells
+from .point_cells import PointCells, find_limits
 
 
 def divide(points, side):

@@ -167,7 +167,8 @@ def test_edges_across_several_squares_are_cut_at_one_place(tmp_path):
     points = np.column_stack([xy + np.array([500_000.0, 4_000_000.0]), rng.normal(0, 30, len(xy))])
     whole = ts.triangulate(points)
     tree = Quadtree.over(whole.bounds, len(points), 2)
-    for node in Node(0, 0, 0).list_descendants(tree.levels):
+    for x, y in np.ndindex(1 << tree.levels, 1 << tree.levels):
+        node = Node(tree.levels, x, y)
         box = tree.find_box(node)
         beyond = tree.find_box(node._replace(x=node.x + 1))
         mesh, east = (make_finest(whole.points, whole.triangles, one, 0.0) for one in (box, beyond))

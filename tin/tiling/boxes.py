@@ -12,11 +12,6 @@ if TYPE_CHECKING:
     from ...base.arrays import BoolArray, Float64Array
 
 
-def find_limits(box: Bounds) -> tuple[Float64Array, Float64Array]:
-    """Return the southwestern and the northeastern corner, (2,) arrays."""
-    return np.array([box.xmin, box.ymin]), np.array([box.xmax, box.ymax])
-
-
 def are_in_box(places: Float64Array, box: Bounds) -> BoolArray:
     """Tell which places, (..., 2 or more), lie in a closed box."""
     x, y = places[..., 0], places[..., 1]  # one after the other: `all` of two is slow

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from .boxes import are_in_box, find_limits
+from .boxes import are_in_box
 
 if TYPE_CHECKING:
     from ...base.arrays import BoolArray, Float64Array, Int32Array, Int64Array
@@ -42,13 +42,6 @@ class Discs(NamedTuple):
         slack = 4 * _ROUNDING * (np.abs(self.centers) + self.radii[:, None])
         is_within: BoolArray = are_in_box(low - slack, box) & are_in_box(high + slack, box)
         return is_within
-
-    def may_meet(self, box: Bounds) -> BoolArray:
-        """Tell which may have a point in common with a closed box."""
-        low, high = find_limits(box)
-        gap = np.maximum(np.maximum(low - self.centers, self.centers - high), 0.0)
-        near = np.hypot(gap[:, 0], gap[:, 1]) * (1 - 8 * _ROUNDING) <= self.radii
-        return np.asarray(near | np.isinf(self.radii))
 
 
 def bound_discs(points: Float64Array, triangles: Int32Array) -> Discs:

@@ -57,7 +57,7 @@ class _Reader:
     """Takes records as they come."""
 
     def __init__(self, lines: TextLines, path: Path) -> None:
-        self.book = Book(path, "Trimble")
+        self.book = Book(path)
         # Read units and the order of coordinates, and return whether eastings come first.
         head = find_head(lines)
         if not head.startswith("00"):

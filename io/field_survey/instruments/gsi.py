@@ -105,7 +105,7 @@ def read(
     blocks = list(_iterate_blocks(read_lines(path, encoding=encoding)))
     if not any(11 in block.words for block in blocks):
         raise ReadError(f"{FILE} has no block of a point (word 11).")
-    reader = _Reader(Book(path, "Leica"), oriented=oriented, refraction=coefficient)
+    reader = _Reader(Book(path), oriented=oriented, refraction=coefficient)
     codes = _assign_codes(blocks, code_blocks, reader.book)
     reader.find_unit(blocks)
     reader.find_oriented(blocks)

@@ -150,7 +150,7 @@ class _Reader:
 
     def finish(self) -> Book:
         """Return the points of the reductions, or of the field book where there are none."""
-        book = Book(self.path, "Trimble")
+        book = Book(self.path)
         reduced, observed = self.records["reductions"], self.records["field book"]
         for record in reduced or observed:
             if record.texts.get("Deleted", "").lower() == "true":

@@ -44,8 +44,6 @@ class Book:
     """What a file of an instrument holds, as it is read."""
 
     path: Path
-    program: str
-    """What wrote it, for sentences."""
     unit: Unit | None = METRE
     """Of its lengths; None for feet of which it does not say whether they are of the US."""
     names: list[str] = field(default_factory=list)

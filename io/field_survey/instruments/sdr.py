@@ -81,7 +81,7 @@ class _Reader:
     """Takes records as they come, and remembers the station."""
 
     def __init__(self, lines: TextLines, path: Path, refraction: float | None) -> None:
-        self.book = Book(path, "SDR")
+        self.book = Book(path)
         self.refraction = refraction
         head = find_head(lines)
         version = head[4:20].strip().upper()

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, NamedTuple
 from ....base.types import Bounds
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    pass
 
 
 class Node(NamedTuple):
@@ -40,13 +40,6 @@ class Node(NamedTuple):
         """Its quarters."""
         west, south = 2 * self.x, 2 * self.y
         return tuple(Node(self.level + 1, west + x, south + y) for y in range(2) for x in range(2))
-
-    def list_descendants(self, level: int) -> Iterator[Node]:
-        """Yield the squares of a level in it, from the south-west on."""
-        count = 1 << (level - self.level)
-        for y in range(self.y * count, (self.y + 1) * count):
-            for x in range(self.x * count, (self.x + 1) * count):
-                yield Node(level, x, y)
 
 
 @dataclass(frozen=True)
