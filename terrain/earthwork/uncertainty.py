@@ -65,7 +65,7 @@ def ask(first: Any, other: Any, level: Any, confidence: Any, *, is_plane: bool) 
     return Asked((models[0], models[1]), level, confidence)
 
 
-class Erring(NamedTuple):
+class SurfaceErrors(NamedTuple):
     """A surface and its errors."""
 
     surface: Surface
@@ -87,7 +87,9 @@ class Erring(NamedTuple):
         return variances
 
 
-def find_erring(measured: Measured, asked: Asked, tins: Sequence[TIN | None]) -> list[Erring]:
+def find_surface_errors(
+    measured: Measured, asked: Asked, tins: Sequence[TIN | None]
+) -> list[SurfaceErrors]:
     """Return the surfaces of a measurement with their errors.
 
     Raises OptionError if a column is none of the surface's, or has no value for a vertex.
@@ -105,7 +107,7 @@ def find_erring(measured: Measured, asked: Asked, tins: Sequence[TIN | None]) ->
             errors += find_errors(model, tin, option)
             _require_all(errors, surface, model, option)
         shift = 0.0 if model is None else model.systematic * factor
-        found.append(Erring(surface, errors * factor, model, shift))
+        found.append(SurfaceErrors(surface, errors * factor, model, shift))
     return found
 
 
@@ -133,7 +135,9 @@ def find_detection(
         return Detection(asked.level, rounding=find_rounding(*surfaces))
     if asked.confidence is None:
         return None
-    given = [(one.surface, one.errors, one.shift) for one in find_erring(measured, asked, tins)]
+    given = [
+        (one.surface, one.errors, one.shift) for one in find_surface_errors(measured, asked, tins)
+    ]
     return make_detection(asked.confidence, given, find_rounding(*surfaces))
 
 
@@ -155,7 +159,7 @@ def add_errors(
     """
     if not asked.has_errors and detection is None:
         return measured.table
-    surfaces = find_erring(measured, asked, tins)
+    surfaces = find_surface_errors(measured, asked, tins)
     overlay = Overlay(measured.pieces, measured.other, measured.plane)
     is_copy = len(surfaces) == 2 and not all(asked.models)
     rounding = find_rounding(*(one.surface for one in surfaces)) if is_copy else -1.0
@@ -183,7 +187,7 @@ def add_errors(
 
 
 def _add_weights(
-    cells: Cells, surfaces: Sequence[Erring], weights: list[Float64Array], rounding: float
+    cells: Cells, surfaces: Sequence[SurfaceErrors], weights: list[Float64Array], rounding: float
 ) -> float:
     """Add what the elevation of each vertex changes cut, fill and net by, but for the sign.
 

@@ -35,7 +35,7 @@ class Crossings(NamedTuple):
     -1 for none."""
 
 
-class Beyond(NamedTuple):
+class Violations(NamedTuple):
     """What is to be added because the difference is beyond the tolerance between vertices."""
 
     largest: float
@@ -83,7 +83,7 @@ class SurfaceMeter:
         self._keys = np.unique(topology.edge_keys(own, len(tin.points)))
         self._errors = np.zeros(len(self._keys))
 
-    def measure(self, edges: Int64Array, is_left: BoolArray, limit: float) -> Beyond:
+    def measure(self, edges: Int64Array, is_left: BoolArray, limit: float) -> Violations:
         """Measure the edges inside a surface, (k, 2) vertices of the TIN."""
         keys = topology.edge_keys(edges, len(self.tin.points))
         place = np.minimum(np.searchsorted(self._keys, keys), len(self._keys) - 1)
@@ -110,7 +110,7 @@ class SurfaceMeter:
         rows, forced = choose_rows(found, is_left, limit)
         if len(forced):
             self.forced = np.unique(np.concatenate([self.forced, forced]), axis=0)
-        return Beyond(float(whole), rows, forced)
+        return Violations(float(whole), rows, forced)
 
     def _remember(self, keys: Int64Array, errors: Float64Array) -> None:
         keys, errors = np.append(self._keys, keys), np.append(self._errors, errors)

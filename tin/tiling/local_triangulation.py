@@ -22,7 +22,7 @@ from .circles import bound_discs
 from .duplicates import list_differing
 from .rings import find_inside
 from .sources import NumberedPoints, NumberedSegments
-from .unseen import Question, count_taken, find_unseen_points, find_unseen_segments
+from .unseen import UnsettledTriangles, count_taken, find_unseen_points, find_unseen_segments
 from .visibility import Views, find_views
 
 if TYPE_CHECKING:
@@ -126,9 +126,9 @@ def triangulate_box(
     while True:
         made = _triangulate(seen, threads)
         found = _find(made, box, around, rings)
-        names, question = _find_open(made, found, around, proven, seen.segments)
-        question = question._replace(most=count_taken(rounds))
-        is_safe, has_more = seen.ask(question)
+        names, unsettled = _find_open(made, found, around, proven, seen.segments)
+        unsettled = unsettled._replace(most=count_taken(rounds))
+        is_safe, has_more = seen.ask(unsettled)
         if not has_more:
             break
         rounds += 1
@@ -138,7 +138,9 @@ def triangulate_box(
         rounds=rounds, differing=list_differing(merged.points, merged.account)
     )
     if len(seen.segments.are_rings):
-        _set_elevations(local, seen.segments.vertices)
+        at = np.searchsorted(local.numbers, seen.segments.vertices.numbers)
+        is_there = np.append(local.numbers, -1)[at] == seen.segments.vertices.numbers
+        local.points[at[is_there], 2] = seen.segments.vertices.points[is_there, 2]
     if lines is None or lines.rings is None:
         return local
     return _cut(local, seen.segments, lines.rings)
@@ -166,8 +168,8 @@ def _look_beyond(seen: _Seen, box: Bounds, around: Bounds, rings: int, threads: 
         except PointsError:  # all in line: those of all may not be
             return nothing
         found = _find(made, box, around, rings)
-        names, question = _find_open(made, found, around, proven, seen.segments)
-        is_safe, has_more = seen.ask(question._replace(most=count_taken(rounds)))
+        names, unsettled = _find_open(made, found, around, proven, seen.segments)
+        is_safe, has_more = seen.ask(unsettled._replace(most=count_taken(rounds)))
         proven = np.concatenate([proven, names[is_safe]])
         if not has_more:
             break
@@ -225,11 +227,11 @@ class _Seen:
             others = NumberedPoints.join([others, lines.skeleton, self.segments.vertices])
         self.points = source.read_box(around).sort().add(others.sort())
 
-    def ask(self, question: Question) -> tuple[BoolArray, bool]:
+    def ask(self, unsettled: UnsettledTriangles) -> tuple[BoolArray, bool]:
         """Look at more; tell which triangles are proven, and whether anything was found."""
-        points, is_safe = find_unseen_points(self._source, question, self.points.numbers)
+        points, is_safe = find_unseen_points(self._source, unsettled, self.points.numbers)
         if self._lines is not None:
-            segments, is_clear = find_unseen_segments(self._lines, question, self.segments)
+            segments, is_clear = find_unseen_segments(self._lines, unsettled, self.segments)
             self.segments = self.segments.add(segments)
             points = NumberedPoints.join([points, segments.vertices])
             is_safe &= is_clear
@@ -312,7 +314,7 @@ def _find_open(
     around: Bounds,
     proven: Int64Array,
     segments: NumberedSegments,
-) -> tuple[Int64Array, Question]:
+) -> tuple[Int64Array, UnsettledTriangles]:
     """Return the names of triangles that are not proven yet, and what to ask for them."""
     number = found.chosen[found.open]
     triangles = made.triangles[number]
@@ -325,7 +327,7 @@ def _find_open(
     if made.fixed is not None:
         fixed = made.fixed[number]
         views = find_views(made.places, made.triangles, made.neighbors, made.fixed, number, discs)
-    return names[is_open], Question(
+    return names[is_open], UnsettledTriangles(
         made.places[triangles], fixed, discs, segments.ends_in_plane, views, count_taken(0)
     )
 
@@ -367,13 +369,6 @@ def _extract(
 
 
 # ------------------------------------------------------------------------ lines
-
-
-def _set_elevations(local: LocalTriangulation, vertices: NumberedPoints) -> None:
-    """Give vertices on lines the elevations of these, in place."""
-    at = np.searchsorted(local.numbers, vertices.numbers)
-    is_there = np.append(local.numbers, -1)[at] == vertices.numbers
-    local.points[at[is_there], 2] = vertices.points[is_there, 2]
 
 
 def _cut(local: LocalTriangulation, segments: NumberedSegments, rings: Rings) -> LocalTriangulation:

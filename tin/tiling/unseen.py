@@ -41,7 +41,7 @@ _SLACK = 2.0**-48
 """Of distances, relative to all that they are computed from: far more than their roundings."""
 
 
-class Question(NamedTuple):
+class UnsettledTriangles(NamedTuple):
     """Triangles that something unseen may put an end to.
 
     Attributes
@@ -66,9 +66,9 @@ class Question(NamedTuple):
     views: Views
     most: int
 
-    def choose(self, which: BoolArray) -> Question:
+    def choose(self, which: BoolArray) -> UnsettledTriangles:
         """Return some of the triangles."""
-        return Question(
+        return UnsettledTriangles(
             self.corners[which],
             self.hiding[which],
             self.discs.choose(which),
@@ -111,16 +111,16 @@ def count_taken(rounds: int) -> int:
 
 
 def find_unseen_points(
-    source: PointSource, question: Question, seen: Int64Array
+    source: PointSource, unsettled: UnsettledTriangles, seen: Int64Array
 ) -> tuple[NumberedPoints, BoolArray]:
     """Return unseen points that may change triangles, and of which triangles none may.
 
     Of a disc that holds many, those are taken that lie deepest.
     """
-    if not len(question.corners):
+    if not len(unsettled.corners):
         return NumberedPoints.none(), np.ones(0, np.bool_)
-    some, is_open = _examine(question, source.read_some(question.views.discs), seen)
-    left = question.choose(is_open)
+    some, is_open = _examine(unsettled, source.read_some(unsettled.views.discs), seen)
+    left = unsettled.choose(is_open)
     rest, is_clear = _examine(left, source.read_discs(left.views.discs), seen)
     is_safe = is_open.copy()
     is_safe[is_open] = is_clear
@@ -128,76 +128,76 @@ def find_unseen_points(
 
 
 def _examine(
-    question: Question, found: NumberedPoints, seen: Int64Array
+    unsettled: UnsettledTriangles, found: NumberedPoints, seen: Int64Array
 ) -> tuple[NumberedPoints, BoolArray]:
     """Return which of some points may change triangles, and of which triangles none may."""
-    count = len(question.corners)
+    count = len(unsettled.corners)
     is_safe = np.ones(count, np.bool_)
     found = found.choose(seen[np.searchsorted(seen, found.numbers) % len(seen)] != found.numbers)
     found = found.choose(np.argsort(found.points[:, 0], kind="stable"))
     x, y = np.ascontiguousarray(found.points[:, :2].T)
-    boxes = np.array([_bound_view(question, k) for k in range(count)]).reshape(-1, 2, 2)
+    boxes = np.array([_bound_view(unsettled, k) for k in range(count)]).reshape(-1, 2, 2)
     begins = np.searchsorted(x, boxes[:, 0, 0], "left")
     ends = np.searchsorted(x, boxes[:, 1, 0], "right")
     is_wanted = np.zeros(len(found.numbers), np.bool_)
     for k in np.flatnonzero(begins < ends).tolist():
         across = y[begins[k] : ends[k]]
         near = begins[k] + np.flatnonzero((across >= boxes[k, 0, 1]) & (across <= boxes[k, 1, 1]))
-        near = near[question.are_deciding(k, found.points[near, :2])] if len(near) else near
+        near = near[unsettled.are_deciding(k, found.points[near, :2])] if len(near) else near
         if len(near):
-            distances = np.hypot(*(found.points[near, :2] - question.discs.centers[k]).T)
-            is_wanted[_take_deepest(near, distances, question.most)] = True
+            distances = np.hypot(*(found.points[near, :2] - unsettled.discs.centers[k]).T)
+            is_wanted[_take_deepest(near, distances, unsettled.most)] = True
             is_safe[k] = False
     return found.choose(is_wanted).sort(), is_safe
 
 
 def find_unseen_segments(
-    lines: SegmentSource, question: Question, seen: NumberedSegments
+    lines: SegmentSource, unsettled: UnsettledTriangles, seen: NumberedSegments
 ) -> tuple[NumberedSegments, BoolArray]:
     """Return unseen segments that may change triangles, and of which triangles none may."""
-    discs = question.discs
+    discs = unsettled.discs
     is_safe = np.ones(len(discs.radii), np.bool_)
     if not len(is_safe):
         return NumberedSegments.none(), is_safe
-    found = lines.read_discs(question.views.discs)
+    found = lines.read_discs(unsettled.views.discs)
     found = found.choose(~found.are_among(seen))
     ends = found.ends_in_plane
     low, high = (np.ascontiguousarray(pick(axis=1).T) for pick in (ends.min, ends.max))
     is_wanted = np.zeros(len(ends), np.bool_)
     for k in range(len(is_safe) if len(ends) else 0):
-        (west, south), (east, north) = _bound_view(question, k)
+        (west, south), (east, north) = _bound_view(unsettled, k)
         is_near = (low[0] <= east) & (high[0] >= west) & (low[1] <= north) & (high[1] >= south)
         near = np.flatnonzero(is_near)
         if len(near):
-            near = near[_are_deciding(question, k, ends[near])]
+            near = near[_are_deciding(unsettled, k, ends[near])]
             distances, _ = _measure_distances(ends[near], discs.centers[k])
-            is_wanted[_take_deepest(near, distances, question.most)] = True
+            is_wanted[_take_deepest(near, distances, unsettled.most)] = True
             is_safe[k] = not len(near)
     return found.choose(is_wanted), is_safe
 
 
-def _bound_view(question: Question, k: int) -> tuple[Float64Array, Float64Array]:
+def _bound_view(unsettled: UnsettledTriangles, k: int) -> tuple[Float64Array, Float64Array]:
     """Return the corners of a box in which all lies that may be seen from a triangle."""
-    discs = question.views.discs
+    discs = unsettled.views.discs
     reach = discs.radii[k] * (1 + _SLACK) + _SLACK * float(np.abs(discs.centers[k]).max())
     return discs.centers[k] - reach, discs.centers[k] + reach
 
 
-def _are_deciding(question: Question, k: int, ends: Float64Array) -> BoolArray:
+def _are_deciding(unsettled: UnsettledTriangles, k: int, ends: Float64Array) -> BoolArray:
     """Tell which segments, (f, 2, 2), meet a triangle, or end in its disc where it is seen from.
 
     Where it is not known what is seen, all count that meet the disc and are not hidden.
     """
-    if question.views.corners[k] is None:
-        distances, roundings = _measure_distances(ends, question.discs.centers[k])
-        radius = question.discs.radii[k]
+    if unsettled.views.corners[k] is None:
+        distances, roundings = _measure_distances(ends, unsettled.discs.centers[k])
+        radius = unsettled.discs.radii[k]
         is_near = (distances <= radius * (1 + _SLACK) + roundings) | np.isinf(radius)
-        is_near[is_near] = ~question.find_hidden(k, ends[is_near])
+        is_near[is_near] = ~unsettled.find_hidden(k, ends[is_near])
         return np.asarray(is_near)
-    are_deciding = are_met(question.corners[k], ends)
+    are_deciding = are_met(unsettled.corners[k], ends)
     for end in (0, 1):
         left = np.flatnonzero(~are_deciding)
-        are_deciding[left] = question.are_deciding(k, ends[left, end])
+        are_deciding[left] = unsettled.are_deciding(k, ends[left, end])
     return are_deciding
 
 

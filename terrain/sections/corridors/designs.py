@@ -22,7 +22,7 @@ _ROUNDING = 1e-9
 """Offsets and rises that differ by less are the same."""
 
 
-class Lay(NamedTuple):
+class SideLines(NamedTuple):
     """Lines of a side at stations, from the axis outwards."""
 
     offsets: Float64Array
@@ -70,11 +70,11 @@ class Design:
         lap = self._road.lap
         return given if lap is None else np.unique(lap.repeat(np.union1d(given, lap)))
 
-    def lay(self, side: int, stations: Float64Array) -> Lay:
+    def find_bed(self, side: int, stations: Float64Array) -> SideLines:
         """Return the lines of the parts, the axis among them."""
         return self._add_up(*self._measure(side, self._road.wrap(stations), "parts"))
 
-    def lay_ditch(self, side: int, stations: Float64Array) -> Lay:
+    def find_ditch(self, side: int, stations: Float64Array) -> SideLines:
         """Return the lines of the ditch from the last part on."""
         return self._add_up(*self._measure(side, self._road.wrap(stations), "ditch"))
 
@@ -139,18 +139,18 @@ class Design:
                 found[1, :, k] = np.interp(stations, self._turn[:, 0], column)
         return found[0], found[1], found[2]
 
-    def _add_up(self, widths: Float64Array, slopes: Float64Array, rises: Float64Array) -> Lay:
+    def _add_up(self, widths: Float64Array, slopes: Float64Array, rises: Float64Array) -> SideLines:
         rows = len(widths)
         start = np.zeros((rows, 1))
         offsets = np.cumsum(np.hstack([start, widths]), axis=1)
         heights = np.cumsum(np.hstack([start, widths * slopes / self._up + rises]), axis=1)
-        return Lay(offsets, heights)
+        return SideLines(offsets, heights)
 
     def _require_closed(self, ends: Float64Array) -> None:
         """Refuse a section that is another at the first than at the last station."""
         found = [self.find_rates(side, ends, kind)[:, None] for side in SIDES for kind in KINDS]
         for side in SIDES:
-            found += [*self.lay(side, ends), *self.lay_ditch(side, ends)]
+            found += [*self.find_bed(side, ends), *self.find_ditch(side, ends)]
         if any(np.ptp(one, axis=0).max(initial=0.0) > _ROUNDING for one in found):
             raise LinesError(
                 "The axis closes, but its cross section at the first station is another than at "

@@ -19,8 +19,8 @@ from ...earthwork.grading import (
     require_ground,
     require_on_ground,
 )
-from .designs import Lay
-from .rays import Reach, lay_rays
+from .designs import SideLines
+from .rays import Reach, make_rays
 from .stations import choose_stations
 from .surfaces import CorridorSurface, Rows, build_surface
 
@@ -144,7 +144,8 @@ class Layouts:
         far, most = 0.0, dict.fromkeys(_SIGNS, 0.0)
         across = float(np.hypot(*(np.ptp(self.ground.points[:, :2], axis=0))))
         for side in (-1, 1):
-            bed, ditch = self._design.lay(side, stations), self._design.lay_ditch(side, stations)
+            bed = self._design.find_bed(side, stations)
+            ditch = self._design.find_ditch(side, stations)
             hinge = axis + bed.rises[:, -1]
             foot = hinge + ditch.rises[:, -1]
             far = max(far, 0.25 * float(bed.offsets[:, -1].max()))
@@ -164,7 +165,7 @@ class Layouts:
     def _lay(self, far: float) -> tuple[Layout, dict[str, Float64Array]]:
         reach = Reach(self._design, far)
         stations = self._choose_stations(reach)
-        rays = lay_rays(self._road, reach, stations, self._tolerance)
+        rays = make_rays(self._road, reach, stations, self._tolerance)
         bed = self._build_bed(rays)
         ends = self._find_ends(reach)
         skirts, slopes, found = [], [], {}
@@ -211,13 +212,13 @@ class Layouts:
     def _build_bed(self, rays: Rays) -> CorridorSurface:
         """Return what lies between the outermost parts."""
         axis = self._road.elevations_at(rays.stations)
-        lays = {side: self._design.lay(side, rays.stations) for side in (-1, 1)}
-        lays = {s: Lay(one.offsets, one.rises + axis[:, None]) for s, one in lays.items()}
+        sides = {side: self._design.find_bed(side, rays.stations) for side in (-1, 1)}
+        sides = {s: SideLines(one.offsets, one.rises + axis[:, None]) for s, one in sides.items()}
         names = {side: ["", *self._design.list_names(side)] for side in (-1, 1)}
         names[1][0] = "axis"
         import shapely
 
-        bed = build_surface(rays, Rows(names, lays), self._hold, self._road)
+        bed = build_surface(rays, Rows(names, sides), self._hold, self._road)
         path = shapely.linestrings(rays.origins[rays.sides == 1])
         if bed is None or bed.area.geom_type != "Polygon" or not shapely.is_simple(path):
             raise LinesError(
@@ -232,21 +233,21 @@ class Layouts:
     ) -> CorridorSurface | None:
         """Return the side slopes of cuts or fills, whether or not they are made."""
         axis = self._road.elevations_at(rays.stations)
-        names, lays = {}, {}
+        names, sides = {}, {}
         for side in (-1, 1):
-            own = self._design.lay(side, rays.stations)
+            own = self._design.find_bed(side, rays.stations)
             first = own.offsets[:, -1:], own.rises[:, -1:] + axis[:, None]
-            ditch = self._design.lay_ditch(side, rays.stations)
-            own = ditch if kind == "cut" else Lay(ditch.offsets[:, :1], ditch.rises[:, :1])
+            ditch = self._design.find_ditch(side, rays.stations)
+            own = ditch if kind == "cut" else SideLines(ditch.offsets[:, :1], ditch.rises[:, :1])
             offsets, heights = first[0] + own.offsets, first[1] + own.rises
             end = first[0] + ditch.offsets[:, -1:] + reach.far
             rates = self._design.find_rates(side, rays.stations, kind)[:, None]
             top = heights[:, -1:] + (end - offsets[:, -1:]) * rates
-            lays[side] = Lay(np.hstack([offsets, end]), np.hstack([heights, top]))
+            sides[side] = SideLines(np.hstack([offsets, end]), np.hstack([heights, top]))
             parts = self._design.list_names(side, ditch=True) if kind == "cut" else []
             names[side] = ["", *parts, ""]
         is_own = partial(self._hold, reach=reach)
-        return build_surface(rays, Rows(names, lays), is_own, self._road, bed=bed)
+        return build_surface(rays, Rows(names, sides), is_own, self._road, bed=bed)
 
     def _hold(self, places: Float64Array, reach: Reach | None = None) -> BoolArray:
         """Whether places are those of the bed, or of side slopes as far as they may go."""
@@ -257,7 +258,8 @@ class Layouts:
         held = np.zeros(len(places), bool)
         for side in (-1, 1):
             own = np.flatnonzero(known & ((offset < 0.0) == (side < 0)))
-            hinge, away = self._design.lay(side, station[own]).offsets[:, -1], np.abs(offset[own])
+            hinge = self._design.find_bed(side, station[own]).offsets[:, -1]
+            away = np.abs(offset[own])
             if reach is None:
                 held[own] = away <= hinge
             else:

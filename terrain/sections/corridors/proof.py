@@ -63,8 +63,8 @@ class _Sections:
     def __init__(
         self, design: Design, side: int, stations: Float64Array, axis: Float64Array
     ) -> None:
-        self._bed = design.lay(side, stations)
-        self._ditch = design.lay_ditch(side, stations)
+        self._bed = design.find_bed(side, stations)
+        self._ditch = design.find_ditch(side, stations)
         self._rates = [design.find_rates(side, stations, kind) for kind in ("cut", "fill")]
         self._axis = axis
 

@@ -73,21 +73,21 @@ class Reach(NamedTuple):
 
     def measure(self, side: int, stations: Float64Array) -> Float64Array:
         """Return the offsets of all lines and of the end, (n, k)."""
-        bed = self.design.lay(side, stations).offsets
-        ditch = bed[:, -1:] + self.design.lay_ditch(side, stations).offsets
+        bed = self.design.find_bed(side, stations).offsets
+        ditch = bed[:, -1:] + self.design.find_ditch(side, stations).offsets
         return np.hstack([bed, ditch[:, 1:], ditch[:, -1:] + self.far])
 
 
-def lay_rays(road: Axis, reach: Reach, stations: Float64Array, tolerance: float) -> Rays:
+def make_rays(road: Axis, reach: Reach, stations: Float64Array, tolerance: float) -> Rays:
     """Return rays at stations, and at those where lines meet what belongs to other stations.
 
     Around the outer side of a bend without a curve rays are so near to each other that circles
     about it lie within the tolerance of chords.
     """
-    return _Laying(road, reach, tolerance).lay(stations)
+    return _RayMaker(road, reach, tolerance).make(stations)
 
 
-class _Laying:
+class _RayMaker:
     def __init__(self, road: Axis, reach: Reach, tolerance: float) -> None:
         axis = road.alignment
         self._axis, self._reach, self._tolerance = axis, reach, tolerance
@@ -97,7 +97,7 @@ class _Laying:
         self._slack = _ROUNDINGS * float(np.spacing(size))
         self._kinks = self._find_kinks()
 
-    def lay(self, stations: Float64Array) -> Rays:
+    def make(self, stations: Float64Array) -> Rays:
         rays = self._match(self._lay_first(self._separate_kinks(stations)))
         is_matched, rounds = True, 0
         for _ in range(_HALVINGS):
@@ -123,7 +123,7 @@ class _Laying:
         for side in (-1, 1):
             is_own = rays.sides == side
             lost = np.setdiff1d(rays.stations[~is_own], rays.stations[is_own])
-            lost = lost[self._reach.design.lay(side, lost).offsets[:, -1] <= NEAR]
+            lost = lost[self._reach.design.find_bed(side, lost).offsets[:, -1] <= NEAR]
             if not len(lost):
                 continue
             sides, turns = np.full(len(lost), side), np.zeros(len(lost))

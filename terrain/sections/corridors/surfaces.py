@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
     from ....base.arrays import BoolArray, Float64Array, Int64Array
     from .axis import Axis
-    from .designs import Lay
+    from .designs import SideLines
     from .rays import Rays
 
 
@@ -34,7 +34,7 @@ class Rows(NamedTuple):
 
     names: dict[int, list[str]]
     """Of the lines of both sides; without one a line is no breakline."""
-    lays: dict[int, Lay]
+    side_lines: dict[int, SideLines]
     """Offsets and elevations at all rays, by the side."""
 
 
@@ -129,7 +129,7 @@ class _Vertices:
         self.used = np.unique(number)
         self._steps = highest - lowest
         self._join(bed)
-        self._lasts = {side: rows.lays[side].offsets.shape[1] - 1 for side in (-1, 1)}
+        self._lasts = {side: rows.side_lines[side].offsets.shape[1] - 1 for side in (-1, 1)}
         self._grid = np.full((len(rays.sides), max(self._lasts.values()) + 1), -1)
         self._grid[owner[~is_cut], column[~is_cut]] = number[~is_cut]
         self._cut = np.full(len(rays.sides), -1)
@@ -159,12 +159,12 @@ class _Vertices:
             row = self._list_row(ray)
             if len(row) < 2 or self._steps[row[-1]] <= _LEVEL:
                 continue
-            offsets = rows.lays[side].offsets[ray]
+            offsets = rows.side_lines[side].offsets[ray]
             before = offsets[offsets < rays.limits[ray] - 0.5 * NEAR][-1]
             longest = 0.5 * (rays.limits[ray] - before)
             at = rays.limits[ray] - min(_SPREAD * self._steps[row[-1]], longest)
             if longest > 10.0 * NEAR and rays.limits[ray] - at > 10.0 * NEAR:
-                height = np.interp(at, offsets, rows.lays[side].rises[ray])
+                height = np.interp(at, offsets, rows.side_lines[side].rises[ray])
                 self._inner[ray] = len(self.points) + len(added)
                 added.append([*(rays.origins[ray] + at * rays.ways[ray]), height])
         if added:
@@ -291,7 +291,7 @@ def _place_vertices(
     cuts, cut_owners = [], []
     for side in (-1, 1):
         own = np.flatnonzero(rays.sides == side)
-        offsets, heights = (part[own] for part in rows.lays[side])
+        offsets, heights = (part[own] for part in rows.side_lines[side])
         limits = rays.limits[own]
         row, column = np.nonzero(offsets <= limits[:, None] + 0.5 * NEAR)
         at = offsets[row, column]

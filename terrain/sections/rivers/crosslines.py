@@ -39,7 +39,7 @@ class Rays(NamedTuple):
         return self.starts[rays] + distances[:, None] * self.ways[rays]
 
 
-class Jumps(NamedTuple):
+class StationJumps(NamedTuple):
     """Places on shores at which the station that is the nearest changes by a step."""
 
     places: Float64Array
@@ -48,7 +48,7 @@ class Jumps(NamedTuple):
     """(c, 2), from which station to which."""
 
 
-class Across(NamedTuple):
+class CrossLines(NamedTuple):
     """Stations, and lines across the water at them."""
 
     stations: Float64Array
@@ -82,8 +82,8 @@ def find_nodes(centreline: Centreline, spacing: float) -> Float64Array:
     return np.concatenate([*pieces, centreline.stations[-1:]])
 
 
-def lay_across(waters: Waters, centreline: Centreline, spacing: float) -> Across:
-    """Lay lines across the water, square to the centreline, that do not meet.
+def make_cross_lines(waters: Waters, centreline: Centreline, spacing: float) -> CrossLines:
+    """Make lines across the water, square to the centreline, that do not meet.
 
     Places in the water belong to the station of the centreline that is nearest. Where it turns,
     those on the inner side of stations before and behind the bend touch: they become one group.
@@ -94,7 +94,7 @@ def lay_across(waters: Waters, centreline: Centreline, spacing: float) -> Across
     reach = 1.0 + float(shapely.distance(shapely.points(shore), centreline.line).max())
     near = _ROUNDINGS * float(np.spacing(np.abs(centreline.points).max() + reach))
     apart = max(near, _FINEST * min(spacing, waters.width))
-    jumps = find_jumps(waters, centreline, spacing, apart)
+    jumps = find_station_jumps(waters, centreline, spacing, apart)
     stations = _join(find_nodes(centreline, spacing), jumps.spans.ravel(), apart)
     rays = _make_normals(centreline, stations, near)
     of, begins, ends = _cut_rays(rays, waters, centreline, reach=reach, near=near)
@@ -105,10 +105,12 @@ def lay_across(waters: Waters, centreline: Centreline, spacing: float) -> Across
     inside = begins[kept] <= near
     starts[inside] = rays.starts[chosen[inside]]
     lines = np.stack([starts, rays.places_at(chosen, ends[kept])], axis=1)
-    return Across(stations, groups, rays.nodes[chosen], lines, inside, jumps.places)
+    return CrossLines(stations, groups, rays.nodes[chosen], lines, inside, jumps.places)
 
 
-def find_jumps(waters: Waters, centreline: Centreline, spacing: float, apart: float) -> Jumps:
+def find_station_jumps(
+    waters: Waters, centreline: Centreline, spacing: float, apart: float
+) -> StationJumps:
     """Find where shores meet the medial axis of the centreline.
 
     Along a shore the nearest station goes from one segment to the next, or to a vertex between
@@ -150,7 +152,7 @@ def find_jumps(waters: Waters, centreline: Centreline, spacing: float, apart: fl
         share[active], label[active] = high, found
         active = active[(found != last[active]) & (high < 1.0)]
     empty = np.empty((0, 2))
-    return Jumps(np.concatenate([empty, *places]), np.concatenate([empty, *spans]))
+    return StationJumps(np.concatenate([empty, *places]), np.concatenate([empty, *spans]))
 
 
 def _join(nodes: Float64Array, others: Float64Array, apart: float) -> Float64Array:

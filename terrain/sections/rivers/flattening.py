@@ -18,7 +18,7 @@ from ...earthwork.grading import arrange_rings, find_area, join_surfaces, measur
 from ...surface import find_reference
 from ..profiles import profile
 from .centrelines import read_centreline
-from .crosslines import lay_across
+from .crosslines import make_cross_lines
 from .levels import BankSamples, find_direction, fit_levels
 from .waters import derive_centreline, find_ends, read_water
 
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from ....base.georeference import Reference
     from ....tin import TIN
     from .centrelines import Centreline
-    from .crosslines import Across
+    from .crosslines import CrossLines
     from .waters import Waters
 
 _LEAST_WIDTH = 30.0
@@ -58,7 +58,7 @@ class Stream(NamedTuple):
 
     waters: Waters
     along: Centreline
-    across: Across
+    across: CrossLines
     shore: Shore
 
 
@@ -169,12 +169,12 @@ def hydroflatten(
         if centreline is None
         else read_centreline(centreline, tin.crs)
     )
-    across = lay_across(waters, along, step)
+    across = make_cross_lines(waters, along, step)
     done(0.2)
     tolerance = measure_tolerance(tin.points)
     shore = _divide_shore(tin, waters, across, tolerance)
     stream = Stream(waters, along, across, shore)
-    ground = _measure_ground(tin, shore.points)
+    ground = tin.interpolate(shore.points, extrapolate="nearest")  # rounded, they may lie outside
     samples, stations = _sample(stream, ground, tolerance)
     is_along, drop = find_direction(samples, across.groups, downstream)
     levels = fit_levels(samples, across.groups, fit, is_along=is_along)
@@ -201,7 +201,7 @@ def hydroflatten(
 # ---------------------------------------------------------------- the shore
 
 
-def _divide_shore(tin: TIN, waters: Waters, across: Across, tolerance: float) -> Shore:
+def _divide_shore(tin: TIN, waters: Waters, across: CrossLines, tolerance: float) -> Shore:
     """Put vertices into the rings where lines across end, and where edges of the ground cross."""
     import shapely
 
@@ -266,15 +266,6 @@ def _insert(
             fixed.append(not is_given[k])
         at[k] = len(path) - 1
     return np.array(path), at[len(ring) :]
-
-
-def _measure_ground(tin: TIN, xy: Float64Array) -> Float64Array:
-    """Return elevations of the ground along the shore, also where rounding puts it outside."""
-    found: Float64Array = tin.interpolate(xy)
-    lost = np.isnan(found)
-    if lost.any():
-        found[lost] = tin.interpolate(xy[lost], method="linear", extrapolate="nearest")
-    return found
 
 
 def _sample(
@@ -376,7 +367,7 @@ def _list_centreline(
 
 
 def _describe_flow(
-    across: Across, *, is_along: bool, drop: float, reference: Reference, how: str
+    across: CrossLines, *, is_along: bool, drop: float, reference: Reference, how: str
 ) -> list[str]:
     """Tell which way the water flows, and where it is level."""
     symbol = _name_unit(reference)
