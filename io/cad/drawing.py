@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ...base import optional
-from ...base.crs import Unit
-from ...base.errors import CrsError, LinesError, OptionError, ReadError, WriteError
+from ...base.crs import Unit, require_projected
+from ...base.errors import LinesError, OptionError, ReadError, WriteError
 from ...base.notes import warn
 from ...base.policies import BreaklineKind
 from ...base.sentences import FILE, counted
@@ -262,12 +262,11 @@ def choose_length_unit(
     declared = Unit.of(unit)
     chosen = declared or obj.elevation_unit
     if obj.crs is not None:
-        if obj.crs.is_geographic:
-            raise CrsError(
-                f"Cannot write {FILE}: {format_name} holds lengths, and {obj.crs.label} measures "
-                "in degrees: reproject first.",
-                crs=obj.crs,
-            )
+        require_projected(
+            obj.crs,
+            f"Cannot write {FILE}: {format_name} holds lengths, and {{crs}} measures in degrees: "
+            "reproject first.",
+        )
         chosen = obj.crs.horizontal_unit
         if declared is not None and declared != chosen:
             raise OptionError("unit", declared.name, f"{chosen.name}, the unit of {obj.crs.label}")
@@ -277,6 +276,15 @@ def choose_length_unit(
             "US survey foot and their like."
         )
     return chosen, _find_factor(obj.elevation_unit, chosen, format_name)
+
+
+def choose_name(obj: object, name: str | None) -> str:
+    """Return what a surface is called in a file, by default its own name."""
+    if name is None:
+        return (obj.name.strip() if isinstance(obj, Surface) else "") or "surface"
+    if not isinstance(name, str) or not name.strip():
+        raise OptionError("name", name, "the name of a surface")
+    return name.strip()
 
 
 def _find_factor(known: Unit | None, unit: Unit | None, format_name: str) -> float:

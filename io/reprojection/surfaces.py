@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, overload
 
 import numpy as np
 
-from ...base.crs import CRS, Unit
+from ...base.crs import CRS, Unit, require_projected
 from ...base.errors import CrsError, OptionError
 from ...base.products import product
 from ...tin import TIN, Surface, Survey
@@ -95,10 +95,7 @@ def reproject(
         )
     if isinstance(surface, Survey):
         return _move_survey(surface, source, target, unit)
-    if target.is_geographic:
-        raise CrsError(
-            f"{target.label} measures in degrees, and a TIN needs a projected CRS.", crs=target
-        )
+    require_projected(target, "{crs} measures in degrees, and a TIN needs a projected CRS.")
     placed = reproject_points(surface.points, source, target, unit=unit)
     notes = [*placed.notes, *_describe_return(source, target)]
     along, across = source.horizontal_unit, target.horizontal_unit

@@ -50,7 +50,9 @@ class Detection:
             return np.full(len(xy), self.level + self._rounding)
         squares = np.zeros(len(xy))
         for one in self._errors:
-            squares += np.square(one if isinstance(one, float) else _interpolate(one, xy))
+            # Rounded, a place at an edge may lie outside.
+            found = one if isinstance(one, float) else one.interpolate(xy, extrapolate="nearest")
+            squares += np.square(found)
         levels = self.level * np.sqrt(squares) + self._rounding
         places = _join(xy)
         for known, own in self._known:
@@ -111,14 +113,6 @@ def classify_beyond(
 def _join(xy: Float64Array) -> Any:
     """Return places as complex numbers, which are sorted by easting, then northing."""
     return xy[:, 0] + 1j * xy[:, 1]
-
-
-def _interpolate(errors: TIN, xy: Float64Array) -> Float64Array:
-    found: Float64Array = errors.interpolate(xy)
-    lost = np.isnan(found)  # by rounding, at an edge
-    if lost.any():
-        found[lost] = errors.interpolate(xy[lost], method="linear", extrapolate="nearest")
-    return found
 
 
 def require_level(level: Any, confidence: Any) -> None:

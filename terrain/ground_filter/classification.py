@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ...base.crs import assume_elevation_unit
+from ...base.crs import assume_elevation_unit, require_projected
 from ...base.errors import CrsError, PointsError
 from ...base.georeference import describe_unknown
 from ...base.progress import Progress
@@ -268,12 +268,11 @@ def find_units(
         note = "The CRS is not known: coordinates are taken to be in metres, as the parameters are."
         across, up = 1.0, 1.0 if elevation_unit is None else elevation_unit.metres
         return across, up or 1.0, (note,)
-    if crs.is_geographic:
-        raise CrsError(
-            f"The points are in {crs.label}, which measures in degrees, and the ground is found by "
-            "lengths: bring them into a projected CRS first.",
-            crs=crs,
-        )
+    require_projected(
+        crs,
+        "The points are in {crs}, which measures in degrees, and the ground is found by lengths: "
+        "bring them into a projected CRS first.",
+    )
     unit = crs.horizontal_unit
     metres = None if unit is None else unit.metres
     if unit is None or metres is None:

@@ -9,7 +9,7 @@ from itertools import count
 from typing import TYPE_CHECKING, Any
 
 from ...base.checks import is_finite_number
-from ...base.crs import FOOT, US_SURVEY_FOOT, Unit
+from ...base.crs import FOOT, US_SURVEY_FOOT, Unit, require_projected
 from ...base.errors import CrsError, OptionError
 from .paper import MM_PER_INCH
 
@@ -123,12 +123,11 @@ def find_ground_unit(crs: CRS | None, declared: UnitLike | None) -> Unit:
     unit is none, or another than the CRS's.
     """
     unit = _parse_unit(declared)
-    if crs is not None and crs.is_geographic:
-        raise CrsError(
-            f"A plan true to scale cannot be drawn in {crs.label}, whose coordinates are angles: "
-            "reproject to a projected CRS first.",
-            crs=crs,
-        )
+    require_projected(
+        crs,
+        "A plan true to scale cannot be drawn in {crs}, whose coordinates are angles: reproject to "
+        "a projected CRS first.",
+    )
     known = None if crs is None else crs.horizontal_unit
     if known is None or known.metres is None:
         if unit is None:

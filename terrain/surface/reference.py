@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ...base.checks import require_tin
-from ...base.errors import CrsError, PointsError
+from ...base.crs import require_projected
+from ...base.errors import PointsError
 from ...base.georeference import Reference, agree
 from ...tin import topology
 from ...tin.predicates import columns, orientation
@@ -19,6 +20,11 @@ if TYPE_CHECKING:
     from ...base.crs import CRS, Unit
     from ...base.georeference import Referenced
     from ...tin import TIN
+
+_NEEDS_LENGTHS = (
+    " cannot be measured in degrees, and the TIN is in {crs}: build it in a projected CRS, such as "
+    "UTM."
+)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -51,7 +57,7 @@ def find_reference(tin: TIN, purpose: str) -> Reference:
 
 def make_reference(crs: CRS | None, unit: Unit | None, purpose: str) -> Reference:
     """Return the units of a CRS and of elevations; errors as of :func:`find_reference`."""
-    _require_lengths(crs, purpose)
+    require_projected(crs, purpose + _NEEDS_LENGTHS)
     return Reference.of(crs, unit)
 
 
@@ -76,7 +82,7 @@ def agree_on_reference(one: Referenced, other: Referenced, purpose: str) -> Refe
     Errors as of :func:`find_common_reference`.
     """
     for each in (one, other):
-        _require_lengths(each.crs, purpose)
+        require_projected(each.crs, purpose + _NEEDS_LENGTHS)
     return agree((one, other), ("the first surface", "the other surface"))
 
 
@@ -84,15 +90,6 @@ def _scale_up(points: Float64Array, factor: float) -> Float64Array:
     if factor == 1.0:
         return points
     return np.ascontiguousarray(points * (1.0, 1.0, factor))
-
-
-def _require_lengths(crs: CRS | None, purpose: str) -> None:
-    if crs is not None and crs.is_geographic:
-        raise CrsError(
-            f"{purpose} cannot be measured in degrees, and the TIN is in {crs.label}: build it in "
-            "a projected CRS, such as UTM.",
-            crs=crs,
-        )
 
 
 def require_finite(values: Float64Array) -> None:

@@ -27,9 +27,6 @@ class CutBoundary(NamedTuple):
     corners: Float64Array
     """(c, 2), along it the places that are vertices of the surface. One that an edge is bent onto
     occurs again."""
-    is_split: BoolArray
-    """(c,), whether the edge from each corner to the next is one of the lines, which are in this
-    order."""
     is_met: BoolArray
     """(c,), whether a line has a vertex on it, its ends included."""
 
@@ -75,7 +72,17 @@ def drape(surface: Triangulation, lines: LineSet, *, threads: int) -> Draped:
     """
     hull = topology.boundary_rings(surface.triangles, surface.neighbors)[0]
     cut = cut_at_boundary(surface.points[hull], lines, threads=threads)
-    return Draped(_take_elevations(surface, cut, lines), cut)
+    polylines = cut.inner
+    xy, owner = _follow_surface(surface, cut.points, polylines)
+    z = _kernel.Locator(surface.points, surface.triangles, surface.neighbors).interpolate(xy)
+    known = _look_elevations_up(xy, cut.points, cut.elevations)
+    z = np.where(np.isnan(known), z, known)
+    keep = ~np.isnan(z)
+    xy, z, owner = xy[keep], z[keep], owner[keep]
+    counts = np.bincount(owner, minlength=len(polylines))
+    table = lines.table.take(polylines.lines)
+    table = table._replace(priorities=np.full(len(polylines), BELOW_ALL))
+    return Draped(LineSet(xy, z, find_offsets(counts), table), cut)
 
 
 def cut_at_boundary(ring: Float64Array, lines: LineSet, *, threads: int) -> CutLines:
@@ -95,7 +102,7 @@ def cut_at_boundary(ring: Float64Array, lines: LineSet, *, threads: int) -> CutL
             CutBoundary(
                 lines.choose(np.zeros(len(lines.kinds), np.bool_)),
                 ring[:, :2],
-                *np.zeros((2, len(ring)), np.bool_),
+                np.zeros(len(ring), np.bool_),
             ),
         )
     boundary = np.concatenate([ring, ring[:1]])
@@ -197,7 +204,6 @@ def _split_boundary(
     return CutBoundary(
         LineSet(points[chain[rows]], elevations[rows], offsets, table),
         points[chain[corner[:-1]]],
-        is_split,
         before[corner[1:] + 1] > before[corner[:-1]],
     )
 
@@ -207,21 +213,6 @@ def _are_beyond(xy: Float64Array, edge: Float64Array) -> BoolArray:
     start, end = (np.ascontiguousarray(np.broadcast_to(point, xy.shape)) for point in edge)
     beyond: BoolArray = _kernel.orientation(start, end, np.ascontiguousarray(xy)) < 0
     return beyond
-
-
-def _take_elevations(surface: Triangulation, cut: CutLines, lines: LineSet) -> LineSet:
-    """Give lines a vertex at every edge of the surface, and every vertex its elevation."""
-    polylines = cut.inner
-    xy, owner = _follow_surface(surface, cut.points, polylines)
-    z = _kernel.Locator(surface.points, surface.triangles, surface.neighbors).interpolate(xy)
-    known = _look_elevations_up(xy, cut.points, cut.elevations)
-    z = np.where(np.isnan(known), z, known)
-    keep = ~np.isnan(z)
-    xy, z, owner = xy[keep], z[keep], owner[keep]
-    counts = np.bincount(owner, minlength=len(polylines))
-    table = lines.table.take(polylines.lines)
-    table = table._replace(priorities=np.full(len(polylines), BELOW_ALL))
-    return LineSet(xy, z, find_offsets(counts), table)
 
 
 def _look_elevations_up(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import fields, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from ...base.arrays import Int32Array, Int64Array
     from ..constraints import Breakline
     from ..report import Edit
+    from ..triangulation import Triangulation
 
 _MERGES = [one.name for one in fields(Report) if one.name.startswith("merged_")] + [
     "vertex_elevations"
@@ -91,6 +92,25 @@ def account_for_edits(
         simplification=None,
     )
     return account_for_removed(edited, vertex_of)
+
+
+def account_for_fewer_vertices(
+    report: Report,
+    surface: Triangulation,
+    number_of: Int32Array,
+    vertex_of: Int32Array,
+    why: str,
+    **changes: Any,
+) -> Report:
+    """Return a report with vertex ``v`` called ``number_of[v]``, whose rows have these vertices."""
+    counts = (len(vertex_of), len(surface.points), len(surface.triangles))
+    fewer = replace(
+        renumber_vertices(report, number_of, *counts),
+        merged_vertices=vertex_of[report.merged_rows[report.merged_offsets[:-1]]],
+        unmended=Unmended.none(),
+        **changes,
+    )
+    return account_for_removed(fewer, vertex_of, why)
 
 
 def replace_merges(report: Report, merges: Report | None) -> Report:

@@ -21,7 +21,7 @@ from ..constraints import (
     clip,
     find_lines_in,
 )
-from ..editing import account_for_edits, account_for_removed, renumber_vertices
+from ..editing import account_for_fewer_vertices
 from ..triangulation import mark_illegal_edges
 from .cutting import CutSurface, are_among, cut_along
 
@@ -32,7 +32,6 @@ if TYPE_CHECKING:
     from ...base.policies import LineKind
     from ...base.progress import Tell
     from ..constraints import Lines
-    from ..report import Report
     from ..surface import TIN
     from ..triangulation import Triangulation
 
@@ -99,7 +98,9 @@ class _Part(NamedTuple):
         surface, number_of = clip(mesh, keep)
         surface = replace(surface, constrained=mesh.constrained[keep])
         polylines = Polylines.whole(lines.vertices, lines.offsets).renumber(number_of)
-        left = polylines.keep(_are_edges(polylines.segments(), surface))
+        pairs = polylines.segments()
+        edges = topology.edges_at(surface.triangles, surface.constrained)
+        left = polylines.keep(_are_among(pairs, edges, len(surface.points)))
         priorities = np.zeros(len(lines))
         table = ConstraintTable(lines.kinds, lines.sources, priorities, lines.names)
         return cls(
@@ -108,12 +109,6 @@ class _Part(NamedTuple):
             list(left),
             table.take(left.lines),
         )
-
-
-def _are_edges(pairs: Int32Array, surface: Triangulation) -> BoolArray:
-    """Tell which pairs of vertices, of which some are -1 for none, are constrained edges."""
-    edges = topology.edges_at(surface.triangles, surface.constrained)
-    return _are_among(pairs, edges, len(surface.points))
 
 
 def _are_among(pairs: Int32Array, edges: Int32Array, n_vertices: int) -> BoolArray:
@@ -180,10 +175,11 @@ class _Result:
         number_of[there] = self._number_of[number_of[there]]
         vertex_of = number_of[tin.vertex_of]
         made = len(surface.points) - int((number_of >= 0).sum())
+        why = "in a hole" if self._outside else "outside the boundary"
         version = Version(
             triangulation=surface,
             vertex_of=vertex_of,
-            report=self._report(number_of, vertex_of),
+            report=account_for_fewer_vertices(tin.report, surface, number_of, vertex_of, why),
             lines=self._find_lines(joints, surface),
         )
         return Clipped(tin._with_version(version), made, len(joints))
@@ -227,21 +223,6 @@ class _Result:
             np.append(left.lines, len(self._lines.kinds) + more.lines).astype(np.int32),
         )
         return find_lines_in(together, table, self._number_of, surface, is_whole=False)
-
-    def _report(self, number_of: Int32Array, vertex_of: Int32Array) -> Report:
-        report, surface = self._tin.report, self._surface
-        counts = (len(surface.points), len(surface.triangles))
-        known = renumber_vertices(report, number_of, len(vertex_of), *counts)
-        clipped = replace(
-            account_for_edits(report, vertex_of, *counts, report.edits),
-            left_out_rows=report.left_out_rows,
-            left_out_why=report.left_out_why,
-            crossings=known.crossings,
-            overruled=known.overruled,
-            simplification=report.simplification,
-        )
-        why = "in a hole" if self._outside else "outside the boundary"
-        return account_for_removed(clipped, vertex_of, why)
 
 
 def _make_table(kind: LineKind, sources: Int64Array, name: str = "") -> ConstraintTable:

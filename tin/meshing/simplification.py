@@ -18,7 +18,7 @@ from ...base.progress import Progress
 from .. import _kernel, topology
 from ..building import Version
 from ..constraints import find_lines_in
-from ..editing import account_for_edits, account_for_removed, renumber_vertices
+from ..editing import account_for_fewer_vertices
 from ..report import Simplification
 from ..surface import TIN
 from ..triangulation import Triangulation
@@ -385,19 +385,15 @@ class _Part:
 
     def _report(self, found: Simplification, vertex_of: Int32Array) -> Any:
         report = self.tin.report
-        surface = self.surface
-        counts = (len(surface.points), len(surface.triangles))
-        known = renumber_vertices(report, self._number_of, len(vertex_of), *counts)
-        simplified = replace(
-            account_for_edits(report, vertex_of, *counts, report.edits),
-            left_out_rows=report.left_out_rows,
-            left_out_why=report.left_out_why,
-            crossings=known.crossings,
-            overruled=known.overruled,
+        return account_for_fewer_vertices(
+            report,
+            self.surface,
+            self._number_of,
+            vertex_of,
+            "simplified away",
             notes=(*report.notes, found.sentence(), *describe_flips(self.tin)),
             simplification=found,
         )
-        return account_for_removed(simplified, vertex_of, "simplified away")
 
 
 def _describe_overlap() -> PointsError:

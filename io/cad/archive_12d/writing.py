@@ -11,12 +11,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ....base.atomic import replacing
-from ....base.errors import FormatError, OptionError
+from ....base.errors import FormatError
 from ....base.sentences import FILE
 from ....tin import TIN, Surface, Survey
 from ...mesh import format_rows, list_chains
 from ...registry import warn_of_lost_attributes
-from ..drawing import choose_length_unit, list_lines, scale_elevations
+from ..drawing import choose_length_unit, choose_name, list_lines, scale_elevations
 from ..surfaces import Line
 from .names import CONSTRAINED, KIND, POLYGON, PRIORITY, SOURCE
 
@@ -64,7 +64,7 @@ def write(
         raise FormatError(
             f"Cannot write {FILE}: a {type(obj).__name__} is neither a TIN nor a Survey."
         )
-    quoted = _quote(_choose_name(obj, name))
+    quoted = _quote(choose_name(obj, name))
     factor = 1.0
     if obj.crs is not None:
         _, factor = choose_length_unit(obj, None, is_known=lambda _: True, format_name="12d Model")
@@ -91,14 +91,6 @@ def write(
 
 def _ignore(done: float) -> None:
     """Tell nobody."""
-
-
-def _choose_name(obj: TIN | Survey, name: str | None) -> str:
-    if name is None:
-        return (obj.name.strip() if isinstance(obj, Surface) else "") or "surface"
-    if not isinstance(name, str) or not name.strip():
-        raise OptionError("name", name, "the name of a tin")
-    return name.strip()
 
 
 def _format_tin(tin: TIN, points: Float64Array, name: str) -> Iterator[tuple[int, str]]:

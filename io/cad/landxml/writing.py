@@ -21,7 +21,7 @@ from ....base.sentences import FILE, counted
 from ....terrain import Alignment
 from ....tin import TIN, Surface, Survey
 from ...registry import select_attributes, warn_of_unknown_elevations
-from ..drawing import choose_length_unit, list_lines, scale_elevations
+from ..drawing import choose_length_unit, choose_name, list_lines, scale_elevations
 from .alignment_writing import format_alignment
 from .content import ELEVATION_UNIT, FEATURE, KIND, LINE, PRIORITY, SOURCE, UNKNOWN, quote
 from .units import name_unit
@@ -106,7 +106,7 @@ def write(
         return
     if not isinstance(obj, Surface | Survey | Features):
         raise FormatError(f"Cannot write {FILE}: a {type(obj).__name__} is no surface or survey.")
-    surface = _choose_name(obj, name)
+    surface = choose_name(obj, name)
     _require_lines(obj)
     along, factor = choose_length_unit(
         obj, unit, is_known=lambda one: name_unit(one) is not None, format_name="LandXML"
@@ -133,14 +133,6 @@ def write(
     if progress is not None:
         progress(1.0)
     warn_of_unknown_elevations(obj)
-
-
-def _choose_name(obj: TIN | Survey | Features, name: str | None) -> str:
-    if name is None:
-        return (obj.name.strip() if isinstance(obj, Surface) else "") or "surface"
-    if not isinstance(name, str) or not name.strip():
-        raise OptionError("name", name, "the name of a surface")
-    return name.strip()
 
 
 def _write_alignment(
@@ -348,18 +340,14 @@ def format_source(obj: TIN | Survey | Features, factor: float, decimals: int | N
         elif isinstance(obj, Features) and rows.shape[1] == 3 and np.ptp(rows[:, 2]) == 0:
             found["Contours"].append(_format_contour(rows))
         elif line.kind != "erase":
-            found["Breaklines"].append(_format_breakline(rows, line.name, extra))
+            brk = "nondestructive" if rows.shape[1] == 2 else "standard"
+            named = f" name={quote(line.name)}" if line.name else ""
+            found["Breaklines"].append(
+                f'<Breakline brkType="{brk}"{named}>\n{_format_list(rows)}{_format_feature(extra)}'
+                "</Breakline>\n"
+            )
     parts = [f"<{name}>\n{''.join(part)}</{name}>\n" for name, part in found.items() if part]
     return f"<SourceData>\n{''.join(parts)}</SourceData>\n" if parts else ""
-
-
-def _format_breakline(rows: Float64Array, name: str, extra: dict[str, str]) -> str:
-    brk = "nondestructive" if rows.shape[1] == 2 else "standard"
-    named = f" name={quote(name)}" if name else ""
-    return (
-        f'<Breakline brkType="{brk}"{named}>\n{_format_list(rows)}{_format_feature(extra)}'
-        "</Breakline>\n"
-    )
 
 
 def _format_boundary(rows: Float64Array, kind: str, name: str, extra: dict[str, str]) -> str:

@@ -17,7 +17,7 @@ import numpy as np
 
 from ....base.atomic import replacing
 from ....base.checks import as_number
-from ....base.crs import assume_elevation_unit
+from ....base.crs import assume_elevation_unit, require_projected
 from ....base.errors import CrsError, WriteError, choice
 from ....base.notes import warn
 from ....base.policies import SceneFrame
@@ -109,11 +109,11 @@ def write(
     tin = require_tin(surface, format_name="GLB")
     as_number("exaggeration", exaggeration, above=0)
     choice("frame", frame, SceneFrame)
-    if frame != "globe" and tin.crs is not None and tin.crs.is_geographic:
-        raise CrsError(
-            f"Cannot write {FILE}: GLB is in metres, and {tin.crs.label} in degrees; build the "
-            "TIN in a projected CRS, or take `frame='globe'`.",
-            crs=tin.crs,
+    if frame != "globe":
+        require_projected(
+            tin.crs,
+            f"Cannot write {FILE}: GLB is in metres, and {{crs}} in degrees; build the TIN in a "
+            "projected CRS, or take `frame='globe'`.",
         )
     draped = None if ortho is None else load_texture(ortho, tin)
     scale = _choose_scale(tin)

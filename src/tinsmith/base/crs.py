@@ -517,14 +517,19 @@ def assume_elevation_unit(crs: CRS | None, unit: Unit | None) -> Unit | None:
     return unit if unit is not None or crs is None else crs.usual_elevation_unit
 
 
+def require_projected(crs: CRS | None, sentence: str) -> None:
+    """Refuse longitude and latitude; "{crs}" in the sentence stands for the CRS."""
+    if crs is not None and crs.is_geographic:
+        raise CrsError(sentence.replace("{crs}", crs.label), crs=crs)
+
+
 def require_lengths(crs: CRS | None) -> None:
     """Refuse to measure areas in the plane where coordinates are longitude and latitude."""
-    if crs is not None and crs.is_geographic:
-        raise CrsError(
-            f"Coordinates in {crs.label} are angles, and areas cannot be measured in their "
-            "squares: a projected CRS is needed.",
-            crs=crs,
-        )
+    require_projected(
+        crs,
+        "Coordinates in {crs} are angles, and areas cannot be measured in their squares: a "
+        "projected CRS is needed.",
+    )
 
 
 def scale_elevations(crs: CRS | None, unit: Unit | None) -> float:
@@ -534,12 +539,11 @@ def scale_elevations(crs: CRS | None, unit: Unit | None) -> float:
     """
     if crs is None:
         return 1.0
-    if crs.is_geographic:
-        raise CrsError(
-            f"Coordinates in {crs.label} are angles, which have no length of their own in space: "
-            "a projected CRS is needed.",
-            crs=crs,
-        )
+    require_projected(
+        crs,
+        "Coordinates in {crs} are angles, which have no length of their own in space: a projected "
+        "CRS is needed.",
+    )
     along, up = crs.horizontal_unit, assume_elevation_unit(crs, unit)
     if up is None or up.metres is None or along.metres is None or up == along:
         return 1.0

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from ..base.atomic import replacing
+from ..base.crs import CRS, Unit
 from ..base.errors import MissingExtraError, ReadError, TinsmithError, WriteError
 from ..terrain.parts import are_owned, are_owned_triangles
 from ..tin.tiling import LocalTriangulation, find_differing, intersect, triangulate_box, widen
@@ -196,6 +197,11 @@ def add_units(points: StoredPoints, options: Mapping[str, Any]) -> dict[str, Any
         "crs": None if crs is None else str(crs),
         "elevation_unit": None if unit is None else unit.text,
     }
+
+
+def find_reference(options: Mapping[str, Any]) -> tuple[CRS | None, Unit | None]:
+    """Return the CRS and the unit of elevations that :func:`add_units` wrote into options."""
+    return CRS.of(options["crs"]), Unit.of(options["elevation_unit"] or None)
 
 
 def keep_records(

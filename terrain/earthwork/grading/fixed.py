@@ -267,11 +267,7 @@ def _make_region(name: str, polygon: Any, level: float | None, tin: TIN) -> Fixe
     if level is None:
         ground = clip(tin, [polygon])
         corners, sides = _insert_breaks(polygon, ground, measure_tolerance(tin.points))
-        heights = tin.interpolate(corners)
-        lost = np.isnan(heights)  # by rounding, at the outline
-        if lost.any():
-            nearest = tin.interpolate(corners[lost], method="linear", extrapolate="nearest")
-            heights[lost] = nearest
+        heights = tin.interpolate(corners, extrapolate="nearest")  # rounded, some may lie outside
         heights[-1] = heights[0]
     else:
         heights, sides = np.full(len(corners), level), np.arange(len(corners) - 1)

@@ -167,14 +167,11 @@ def _measure_elevations(found: TIN, skirt: TIN, ground: TIN) -> Float64Array:
     coordinates are rounded have elevations of their own there.
     """
     xy = found.points[:, :2]
-    elevations: Float64Array = skirt.interpolate(xy)
+    elevations: Float64Array = skirt.interpolate(xy, extrapolate="nearest")  # at edges, by rounding
     at_daylight = np.flatnonzero(found.points[:, 2] == 0.0)
     if len(at_daylight):
         known = ground.interpolate(xy[at_daylight])
         elevations[at_daylight] = np.where(np.isnan(known), elevations[at_daylight], known)
-    lost = np.isnan(elevations)  # by rounding, at an edge
-    if lost.any():
-        elevations[lost] = skirt.interpolate(xy[lost], method="linear", extrapolate="nearest")
     return elevations
 
 

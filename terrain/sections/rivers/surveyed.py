@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from ....base.crs import CRS, Unit, require_one_unit
+from ....base.crs import CRS, Unit, require_one_unit, require_projected
 from ....base.errors import CrsError, LinesError, OptionError
 from ....base.sentences import coordinate, counted, inflect
 from ....tin import Survey, triangulate
@@ -61,7 +61,11 @@ def read_sections(
         own = as_features(given, "section")
         lines, names = _take_features(own, by, notes)
     found = _find_crs(given, own, crs)
-    unit = _find_unit(found, own, elevation_unit)
+    asked, known = Unit.of(elevation_unit), own.elevation_unit
+    if asked is not None and known is not None and asked != known:
+        allowed = f"{known}, in which the elevations of the sections are"
+        raise OptionError("elevation_unit", elevation_unit, allowed)
+    unit = require_one_unit(found, asked or known)
     kept = [_clean(line, name, notes) for line, name in zip(lines, names, strict=True)]
     if len(kept) < 2:
         raise LinesError(f"There is {counted(len(kept), 'cross section')}: 2 or more are needed.")
@@ -83,22 +87,12 @@ def _find_crs(given: Any, own: Any, crs: CrsLike | None) -> CRS | None:
                 crs=one,
             )
     found = known[0] if known else None
-    if found is not None and found.is_geographic:
-        raise CrsError(
-            f"A bed cannot be interpolated in degrees, and the sections are in {found.label}: a "
-            "projected CRS is needed, such as UTM.",
-            crs=found,
-        )
+    require_projected(
+        found,
+        "A bed cannot be interpolated in degrees, and the sections are in {crs}: a projected CRS "
+        "is needed, such as UTM.",
+    )
     return found
-
-
-def _find_unit(crs: CRS | None, own: Any, elevation_unit: UnitLike | None) -> Unit | None:
-    """Return the one unit of the elevations of the sections and of what was said."""
-    asked, known = Unit.of(elevation_unit), own.elevation_unit
-    if asked is not None and known is not None and asked != known:
-        allowed = f"{known}, in which the elevations of the sections are"
-        raise OptionError("elevation_unit", elevation_unit, allowed)
-    return require_one_unit(crs, asked or known)
 
 
 def _take_features(

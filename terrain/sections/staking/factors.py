@@ -13,7 +13,7 @@ import numpy as np
 
 from ....base import optional
 from ....base.checks import as_number, require_tin
-from ....base.crs import CRS, METRE, Unit, assume_elevation_unit
+from ....base.crs import CRS, METRE, Unit, assume_elevation_unit, require_projected
 from ....base.errors import CrsError, OptionError, PointsError
 from ....base.notes import as_notes
 from ....base.products import product
@@ -33,6 +33,7 @@ if TYPE_CHECKING:
 
     Place = TypeVar("Place", TIN, Survey, Alignment, Features)
 
+_NEEDS_LENGTHS = "Coordinates in {crs} are angles: a combined factor is that of a projected CRS."
 _LEAST, _MOST = 0.5, 2.0
 _REACH = 200.0
 """Metres to either side of a point, between which a scale is measured: to about 1e-9."""
@@ -97,7 +98,7 @@ class CombinedFactor:
         keep(self, "base", _as_base(self.base))
         keep(self, "crs", CRS.of(self.crs))
         keep(self, "notes", as_notes(self.notes))
-        _require_projected(self.crs)
+        require_projected(self.crs, _NEEDS_LENGTHS)
         parts = self.grid_scale, self.elevation_factor
         for name, value in zip(("grid_scale", "elevation_factor"), parts, strict=True):
             if value is not None:
@@ -308,7 +309,7 @@ def combined_factor(
     crs = CRS.of(cast("CrsLike", where)) if places is None else _find_crs(places)
     if crs is None:
         raise CrsError("The CRS is not known, and a scale factor is that of a projected CRS.")
-    _require_projected(crs)
+    require_projected(crs, _NEEDS_LENGTHS)
     base = _as_base(_find_middle(places) if point is None else point)
     own = None if places is None else places.elevation_unit
     unit = Unit.of(elevation_unit) or own or assume_elevation_unit(crs, None) or METRE
@@ -339,14 +340,6 @@ def _as_base(given: Any) -> tuple[float, float]:
         raise OptionError("point", given, "an easting and a northing")
     east, north = values.tolist()
     return east, north
-
-
-def _require_projected(crs: CRS | None) -> None:
-    if crs is not None and crs.is_geographic:
-        raise CrsError(
-            f"Coordinates in {crs.label} are angles: a combined factor is that of a projected CRS.",
-            crs=crs,
-        )
 
 
 def _find_crs(places: Any) -> CRS | None:

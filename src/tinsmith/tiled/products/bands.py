@@ -7,13 +7,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ...base.crs import CRS, Unit
 from ...terrain.isolines import LevelOptions, Levels, as_levels
 from ...terrain.parts import bands
 from ...terrain.surface import measure_rounding
 from ..tasks import (
     TileProduct,
     add_units,
+    find_reference,
     join_elevations,
     load_arrays,
     measure_elevations,
@@ -59,13 +59,8 @@ def _make_levels(options: Mapping[str, Any]) -> LevelOptions:
 def _make_options(options: Mapping[str, Any]) -> bands.BandOptions:
     values = np.array(options["values"], np.float64)
     levels = Levels(values, np.zeros(len(values), np.bool_))
-    return bands.BandOptions(
-        levels,
-        options["rounding"],
-        options["extent"],
-        CRS.of(options["crs"]),
-        Unit.of(options["elevation_unit"] or None),
-    )
+    reference = find_reference(options)
+    return bands.BandOptions(levels, options["rounding"], options["extent"], *reference)
 
 
 def compute(part: Part) -> tuple[int, dict[str, Any], list[str]]:

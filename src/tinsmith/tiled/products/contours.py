@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ...base.crs import CRS, Unit
 from ...terrain.isolines import LevelOptions, Levels, as_levels
 from ...terrain.parts import contours, require_local
 from ..tasks import (
     TileProduct,
     add_units,
+    find_reference,
     join_elevations,
     load_arrays,
     measure_elevations,
@@ -66,9 +66,7 @@ def _make_options(options: Mapping[str, Any]) -> contours.ContourOptions:
         np.array(options["values"], np.float64),
         np.array(options["is_index"], np.bool_),
     )
-    return contours.ContourOptions(
-        levels, CRS.of(options["crs"]), Unit.of(options["elevation_unit"] or None)
-    )
+    return contours.ContourOptions(levels, *find_reference(options))
 
 
 def compute(part: Part) -> tuple[int, dict[str, Any], list[str]]:

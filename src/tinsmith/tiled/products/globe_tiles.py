@@ -18,7 +18,7 @@ import numpy as np
 
 from ...base.atomic import replacing
 from ...base.checks import as_flag, require_count
-from ...base.crs import CRS, Unit
+from ...base.crs import CRS
 from ...base.errors import CrsError, PointsError
 from ...base.notes import warn
 from ...base.types import Bounds
@@ -47,7 +47,7 @@ from ...io.mesh.quantized_mesh import (
 )
 from ...terrain.parts import are_owned
 from ...terrain.simplification.pyramid import Mesh, Node, Quadtree, join_nodes, simplify
-from ..tasks import TileProduct, add_units, do_task, save_arrays
+from ..tasks import TileProduct, add_units, do_task, find_reference, save_arrays
 from .squares import (
     NodeJob,
     find_meshes,
@@ -112,7 +112,7 @@ def compute(part: Part) -> Made:
     owned = local.triangles[local.owned]
     if not len(local.triangles):
         return 0, {}, []
-    crs, unit = CRS.of(options["crs"]), Unit.of(options["elevation_unit"] or None)
+    crs, unit = find_reference(options)
     if crs is None:
         raise CrsError("The CRS of the points is not known.")
     places = place_on_globe(local.points, crs, unit)

@@ -7,10 +7,9 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 from ...base.atomic import replacing
-from ...base.crs import CRS, Unit
 from ...base.errors import OptionError
 from ...terrain.parts import are_owned, as_surface
-from ..tasks import TileProduct
+from ..tasks import TileProduct, find_reference
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -43,7 +42,7 @@ def compute(part: Part) -> tuple[int, dict[str, Any], list[str]]:
     if not len(local.triangles):
         return 0, {}, []
     options = job.options
-    tin = as_surface(local, CRS.of(options["crs"]), Unit.of(options["elevation_unit"] or None))
+    tin = as_surface(local, *find_reference(options))
     module, _, name = options["function"].partition(":")
     function: Any = import_module(module)
     for one in name.split("."):

@@ -14,7 +14,6 @@ from typing import TYPE_CHECKING, Any
 
 from ...base.atomic import replacing
 from ...base.checks import as_number, require_count
-from ...base.crs import CRS, Unit
 from ...base.errors import CrsError, PointsError
 from ...base.notes import warn
 from ...base.types import Bounds
@@ -27,7 +26,7 @@ from ...terrain.simplification.pyramid import (
     join_nodes,
 )
 from ...terrain.simplification.pyramid import simplify as simplify_node
-from ..tasks import TileProduct, add_units, do_task
+from ..tasks import TileProduct, add_units, do_task, find_reference
 from .squares import (
     NodeJob,
     as_node,
@@ -92,16 +91,11 @@ class _Plan:
 
     @classmethod
     def of(cls, options: Mapping[str, Any]) -> _Plan:
-        crs = CRS.of(options["crs"])
+        crs, unit = find_reference(options)
         if crs is None:
             raise CrsError("The CRS of the points is not known.")
         low, high = options["elevations"]
-        scene = Scene(
-            crs,
-            Unit.of(options["elevation_unit"] or None),
-            Bounds(**options["bounds"]),
-            (float(low), float(high)),
-        )
+        scene = Scene(crs, unit, Bounds(**options["bounds"]), (float(low), float(high)))
         return cls(Quadtree(**options["quadtree"]), scene, options["tolerance"])
 
     def simplify(self, children: Sequence[Mesh], node: Node) -> Mesh:

@@ -6,12 +6,11 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from ...base.checks import as_percentages
-from ...base.crs import CRS, Unit
 from ...base.errors import choice
 from ...base.policies import SlopeUnit
 from ...terrain.parts import statistics
 from ...terrain.relief import PERCENTILES, as_table
-from ..tasks import TileProduct, load_arrays, save_arrays
+from ..tasks import TileProduct, find_reference, load_arrays, save_arrays
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -39,9 +38,7 @@ def compute(part: Part) -> tuple[int, dict[str, Any], list[str]]:
     local = part.triangulate(box, ordered=False)
     if not len(local.triangles):
         return 0, {}, []
-    asked = statistics.StatisticsOptions(
-        options["unit"], CRS.of(options["crs"]), Unit.of(options["elevation_unit"] or None)
-    )
+    asked = statistics.StatisticsOptions(options["unit"], *find_reference(options))
     found = statistics.compute_part(local, box, asked)
     return len(local.points), {}, save_arrays(part, **found._asdict())
 

@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ...base.atomic import replacing
-from ...base.crs import CRS, Unit
 from ...base.errors import OptionError
 from ...base.notes import collecting_warnings, join_alike, warn
 from ...base.results import Features
@@ -21,7 +20,7 @@ from ...tin import TIN
 from ..numbering import NUMBER, number_vertices
 from ..reading import open_store
 from ..running import hash_file
-from ..tasks import TileProduct, save_arrays
+from ..tasks import TileProduct, find_reference, save_arrays
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -153,10 +152,11 @@ class SurfaceParts:
             arrays = dict(found)
         numbers = np.fromfile(_find(self.folder, record, _NUMBERS), NUMBER)
         fits = self.count <= np.iinfo(np.int32).max
+        crs, unit = find_reference(self.options)
         return TIN.from_triangles(
             **arrays,
-            crs=CRS.of(self.options["crs"]),
-            elevation_unit=Unit.of(self.options["elevation_unit"] or None),
+            crs=crs,
+            elevation_unit=unit,
             attributes={_VERTEX: numbers.astype(np.int32) if fits else numbers},
         )
 

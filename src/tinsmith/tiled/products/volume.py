@@ -18,7 +18,7 @@ from ...terrain.surface import Pieces, Reference, Surface, agree_on_reference, m
 from ...tin.tiling import find_triangles_at, triangulate_box, widen
 from ..given import Given, load_given
 from ..reading import open_store, tell_differing
-from ..tasks import HALO, TileProduct, load_arrays, measure_differing, save_arrays
+from ..tasks import HALO, TileProduct, find_reference, load_arrays, measure_differing, save_arrays
 from ..tiled_points import TiledPoints
 
 if TYPE_CHECKING:
@@ -126,7 +126,7 @@ def settle_options(
 
 
 def _make_options(options: Mapping[str, Any]) -> volumes.VolumeOptions:
-    crs, unit = CRS.of(options["crs"]), Unit.of(options["elevation_unit"] or None)
+    crs, unit = find_reference(options)
     given, names, pieces = options["regions"], ("all",), None
     if given is not None:
         surface = Surface(
