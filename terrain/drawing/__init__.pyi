@@ -21,6 +21,7 @@ from .linework import find_line_edges as find_line_edges
 from .linework import join_edges as join_edges
 from .models import choose_origin as choose_origin
 from .north_up import draw_north_up as draw_north_up
+from .north_up import turn_upright as turn_upright
 from .palette import BACKGROUNDS as BACKGROUNDS
 from .palette import COMPASS as COMPASS
 from .palette import STEEPNESS as STEEPNESS

@@ -84,9 +84,19 @@ def _turn_texts(rotation: Any, axes: Axes) -> Float64Array:
     """Return the rotation of texts, degrees counter-clockwise, such that they stay upright."""
     angle = np.radians(np.asarray(rotation, np.float64))
     x, y = axes.turn(np.column_stack([np.cos(angle), np.sin(angle)])).T
-    turned = np.degrees(np.arctan2(y, x))
-    upright: Float64Array = turned - 180.0 * np.ceil((turned - 90.0) / 180.0) + 0.0
+    upright: Float64Array = turn_upright(np.degrees(np.arctan2(y, x)))
     return upright
+
+
+def turn_upright(rotation: Any) -> Any:
+    """Return the direction of texts that are read upright, above -90 up to 90 degrees.
+
+    Examples
+    --------
+    >>> float(turn_upright(135.0)), float(turn_upright(-90.0))
+    (-45.0, 90.0)
+    """
+    return rotation - 180.0 * np.ceil((rotation - 90.0) / 180.0) + 0.0
 
 
 def _turn_raster(raster: Raster, axes: Axes, crs: DrawnCRS) -> Raster:

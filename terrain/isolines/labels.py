@@ -10,6 +10,7 @@ from ...base.checks import as_flag, as_length
 from ...base.errors import OptionError
 from ...base.results import Features
 from ...base.types import seal
+from ..drawing import turn_upright
 
 if TYPE_CHECKING:
     from ...base.arrays import AnyArray, Float64Array, Int64Array
@@ -140,10 +141,8 @@ class _Way:
         east, north = np.subtract(*self._at(np.array([at + window, at - window])))
         heading = float(np.degrees(np.arctan2(north, east)))
         is_upright = -90.0 < heading <= 90.0  # along the line the higher side is on the left
-        rotation = heading if is_upright else heading - 180.0 * np.copysign(1.0, heading)
-        rotation = 90.0 if rotation == -90.0 else rotation + 0.0
         uphill = "above" if is_upright else "below"
-        return _Label(float(x), float(y), rotation, uphill, number)
+        return _Label(float(x), float(y), float(turn_upright(heading)), uphill, number)
 
     def _at(self, along: Float64Array) -> Float64Array:
         if self._is_closed:

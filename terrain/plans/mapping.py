@@ -12,7 +12,7 @@ import numpy as np
 from ...base import optional
 from ...base.crs import scale_elevations
 from ...base.results import Features
-from ..drawing import palette
+from ..drawing import palette, turn_upright
 from ..isolines import contour_labels, count_decimals
 from .clipping import Paths, clip_paths, join_paths
 from .grid import draw_grid
@@ -402,15 +402,3 @@ def _subtract(line: Any, boxes: AnyArray) -> list[Float64Array]:
     rest = shapely.difference(line, shapely.union_all(boxes))
     pieces = [shapely.get_coordinates(part) for part in shapely.get_parts(rest)]
     return [piece for piece in pieces if len(piece) > 1]
-
-
-def turn_upright(rotation: float) -> float:
-    """Return the direction of a text along a line that is read upright, above -90 up to 90.
-
-    Examples
-    --------
-    >>> turn_upright(135.0), turn_upright(-90.0)
-    (-45.0, 90.0)
-    """
-    turned = -((-rotation + 90.0) % 180.0) + 90.0
-    return turned + 0.0
