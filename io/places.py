@@ -11,7 +11,7 @@ from ..base.errors import ReadError
 from ..base.results import Features
 from ..base.sentences import FILE
 from ..tin import Survey
-from .delimited import QueryPoints, parse_name, read_query_points
+from .delimited import parse_name, read_query_points
 from .door import names_its_file
 from .reading import read
 from .registry import known_formats, list_claims
@@ -57,7 +57,10 @@ def read_places(path: Path, *, crs: CrsLike | None = None) -> Features:
     refused = None
     if _is_of(file, "delimited"):
         try:
-            return _take_rows(read_query_points(file, crs=wanted), wanted)
+            points = read_query_points(file, crs=wanted)
+            points.require_lengths(wanted)
+            columns = _name_columns(points.columns)
+            return Features.of_points(points.xy, columns=columns, crs=wanted, notes=points.notes)
         except ReadError as error:  # of a survey without a header, that another reader knows
             refused = error
     try:
@@ -92,12 +95,6 @@ def _require_points(found: Features) -> Features:
     if found.kind != "points":
         raise ReadError(f"{FILE} holds {found.kind}: points are needed.")
     return replace(found, columns=_name_columns(found.columns))
-
-
-def _take_rows(points: QueryPoints, crs: CRS | None) -> Features:
-    points.require_lengths(crs)
-    columns = _name_columns(points.columns)
-    return Features.of_points(points.xy, columns=columns, crs=crs, notes=points.notes)
 
 
 def _name_columns(columns: Mapping[str, AnyArray]) -> dict[str, AnyArray]:

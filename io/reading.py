@@ -531,7 +531,13 @@ def _choose_format(file: Path, name: str | None, options: Iterable[str] = ()) ->
     """Return the format of a file that is there and not empty, or of a folder."""
     named = None if name is None else lookup.find_format(name, "read")
     if is_folder(file):
-        return _choose_format_of_folder(file, named)
+        known = [one for one in lookup.known_formats() if one.read and one.sniff_folder is not None]
+        if named in known:
+            return named
+        shown = [one for one in known if named is None and _recognises(one, one.sniff_folder, file)]
+        if shown:
+            return lookup.choose_clear(shown, f"The folder '{file}'")
+        raise ReadError(f"'{file}' is a folder: name a file in it.", path=file)
     head = _read_head(file)
     if named is not None:
         return named if named.name == name else _tell_apart(named, file, head)
@@ -627,16 +633,6 @@ def is_folder(file: Path) -> bool:
         return file.is_dir()
     except (OSError, ValueError):  # as the reader of its first bytes tells better
         return False
-
-
-def _choose_format_of_folder(folder: Path, named: Format | None) -> Format:
-    known = [one for one in lookup.known_formats() if one.read and one.sniff_folder is not None]
-    if named in known:
-        return named
-    shown = [one for one in known if named is None and _recognises(one, one.sniff_folder, folder)]
-    if shown:
-        return lookup.choose_clear(shown, f"The folder '{folder}'")
-    raise ReadError(f"'{folder}' is a folder: name a file in it.", path=folder)
 
 
 def _restore_source(found: Survey | TIN, copy: Path, file: Path) -> Survey | TIN:

@@ -409,7 +409,12 @@ def read_box(
         If ``bounds`` are none, or an option counts points over the whole file.
     """
     (file,) = require_paths([path])
-    box = _as_bounds(bounds)
+    try:
+        box = bounds if isinstance(bounds, Bounds) else Bounds(*map(float, bounds))
+    except (TypeError, ValueError):
+        box = Bounds(np.nan, np.nan, np.nan, np.nan)
+    if not (box.xmin <= box.xmax and box.ymin <= box.ymax):
+        raise OptionError("bounds", bounds, "Bounds, or four numbers: west, south, east, north")
     asked = ask(format=format, crs=crs, elevation_unit=elevation_unit, **options)
     with _opened(file, asked, check_crs) as (inner, call):
         if call.format.read_box is None or inner != file:
@@ -427,13 +432,3 @@ def _opened(file: Path, asked: Asked, check_crs: bool) -> Iterator[tuple[Path, C
         call = prepare_call(inner, asked)
         stack.enter_context(blaming(call.format, inner))
         yield inner, call
-
-
-def _as_bounds(given: Bounds | Sequence[float]) -> Bounds:
-    try:
-        box = given if isinstance(given, Bounds) else Bounds(*map(float, given))
-    except (TypeError, ValueError):
-        box = Bounds(np.nan, np.nan, np.nan, np.nan)
-    if not (box.xmin <= box.xmax and box.ymin <= box.ymax):
-        raise OptionError("bounds", given, "Bounds, or four numbers: west, south, east, north")
-    return box

@@ -132,7 +132,16 @@ def write(
         options["progress"] = done.stage(0.0, 1.0)
     opened = _open_copy(path, file, chosen) if is_object else nullcontext(file)
     with opened as place, done.passing_on(), naming_file(place):
-        _call_writer(chosen, writer, obj, place, options)
+        try:
+            writer(obj, place, **options)
+        except Exception as error:
+            if chosen.is_built_in or isinstance(error, TinsmithError):
+                raise
+            raise WriteError(
+                f"Cannot write '{place}': the writer of the format {chosen.name}, of the plug-in "
+                f"{chosen.distribution}, fails ({describe_failure(error)}).",
+                path=place,
+            ) from error
         if isinstance(obj, Survey) and options.get("kind") != "points":
             warn_of_lost_lines(obj, chosen)
     done.end()
@@ -145,21 +154,6 @@ def _open_copy(stream: Any, name: Path, chosen: Format) -> Iterator[Path]:
     """Yield a file for what a file object gets; sentences speak of its name."""
     with writing_into(stream, chosen) as copy, naming_copy(copy, name):
         yield copy
-
-
-def _call_writer(
-    chosen: Format, writer: Callable[..., Any], obj: object, file: Path, options: dict[str, Any]
-) -> None:
-    try:
-        writer(obj, file, **options)
-    except Exception as error:
-        if chosen.is_built_in or isinstance(error, TinsmithError):
-            raise
-        raise WriteError(
-            f"Cannot write '{file}': the writer of the format {chosen.name}, of the plug-in "
-            f"{chosen.distribution}, fails ({describe_failure(error)}).",
-            path=file,
-        ) from error
 
 
 def find_kind(obj: object, path: Path) -> str:

@@ -164,7 +164,7 @@ def require_one_kind_of_comma(sample: Sequence[str]) -> None:
     rows = [_COMMA_WITH_OTHER.split(line.strip(" \t,|;")) for line in sample]
     count = Counter(map(len, rows)).most_common(1)[0][0]
     cells = [cell for row in rows if len(row) == count >= 3 for cell in row]
-    grouped = next((cell for cell in cells if _is_grouped_by_commas(cell)), None)
+    grouped = next((cell for cell in cells if "," in cell and is_grouped(cell, ".")), None)
     if grouped is not None:
         raise ReadError(
             f"its commas may separate columns or thousands ('{grouped}', without the blank or "
@@ -200,10 +200,6 @@ def require_no_blank_groups(sample: Sequence[str], n_stated: int) -> None:
 
 def _is_grouped_by_blanks(cell: str) -> bool:
     return " " in cell and (is_grouped(cell, ".") or is_grouped(cell, ","))
-
-
-def _is_grouped_by_commas(cell: str) -> bool:
-    return "," in cell and is_grouped(cell, ".")
 
 
 def _score_delimiter(sample: Sequence[str], delimiter: str) -> tuple[float, float, int]:

@@ -495,7 +495,12 @@ def leave_out_cut_row(
             "end: the file may be truncated; the option `skip_bad` leaves the row out.",
             lines=[last + 1],
         )
-    return _drop_last(table, Fault(last, "number", f"{what} and may be cut off")), []
+    return table._replace(
+        points=table.points[:-1],
+        attributes={name: values[:-1] for name, values in table.attributes.items()},
+        rows=table.rows[:-1],
+        faults=tuple(sorted((*table.faults, Fault(last, "number", f"{what} and may be cut off")))),
+    ), []
 
 
 def _count_decimals(cells: list[str], column: int, decimal: str) -> int | None:
@@ -504,12 +509,3 @@ def _count_decimals(cells: list[str], column: int, decimal: str) -> int | None:
     if not is_number(cell, decimal) or "e" in cell.lower():
         return None
     return len(cell.partition(decimal)[2])
-
-
-def _drop_last(table: Table, fault: Fault) -> Table:
-    return table._replace(
-        points=table.points[:-1],
-        attributes={name: values[:-1] for name, values in table.attributes.items()},
-        rows=table.rows[:-1],
-        faults=tuple(sorted((*table.faults, fault))),
-    )

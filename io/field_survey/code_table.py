@@ -122,14 +122,6 @@ class _Reader:
         codes = table.get("codes")
         if not isinstance(codes, Mapping) or not codes:
             self._fail("codes", codes, "a table of codes, such as EP = 'hard'")
-        rules = self._read_rules(codes, is_exact=is_exact)
-        if style is not None:
-            self._require_apart(rules, style)
-        return CodeTable(
-            rules, style, self._read_tolerance(table, ""), is_exact=is_exact, source=self.name
-        )
-
-    def _read_rules(self, codes: Mapping[str, Any], *, is_exact: bool) -> dict[str, Rule]:
         rules: dict[str, Rule] = {}
         for code, value in codes.items():
             name = code if is_exact else code.upper()
@@ -140,7 +132,11 @@ class _Reader:
             if name in rules:
                 self._fail("a code", code, "there once: another one is written alike but for case")
             rules[name] = self._read_rule(code, value)
-        return rules
+        if style is not None:
+            self._require_apart(rules, style)
+        return CodeTable(
+            rules, style, self._read_tolerance(table, ""), is_exact=is_exact, source=self.name
+        )
 
     def _read_rule(self, code: str, value: Any) -> Rule:
         where = f"codes.{code}"

@@ -132,7 +132,11 @@ def lines_from_codes(
 
         return read_each_file(survey, files, read)
     tolerance = _choose_tolerance(survey, table, arc_tolerance)
-    texts = _require_descriptions(survey)
+    if "description" not in survey.attributes:
+        raise LinesError(
+            "The points have no descriptions to read codes from: a column 'description' is needed."
+        )
+    texts = [str(one or "") for one in np.asarray(survey.attributes["description"]).tolist()]
     order = _order_shots(survey, shot_order).tolist()
     reading, notes = _read(order, texts, table, code_style, _make_namer(survey))
     if shot_order is None:
@@ -163,14 +167,6 @@ def _choose_tolerance(survey: Survey, table: CodeTable, given: float | None) -> 
         return table.arc_tolerance
     metres = None if survey.crs is None else survey.crs.horizontal_unit.metres
     return _TOLERANCE_METRES / (metres or 1.0)
-
-
-def _require_descriptions(survey: Survey) -> list[str]:
-    if "description" not in survey.attributes:
-        raise LinesError(
-            "The points have no descriptions to read codes from: a column 'description' is needed."
-        )
-    return [str(one or "") for one in np.asarray(survey.attributes["description"]).tolist()]
 
 
 def _order_shots(survey: Survey, shot_order: ShotOrder | None) -> Int64Array:

@@ -51,7 +51,8 @@ def download(path: str | os.PathLike[str]) -> Iterator[Path]:
     """
     address = _WEB.sub(r"\1://", str(path), count=1)
     with scratch_folder() as folder:
-        copy = Path(folder, _find_name(address))
+        name = PurePosixPath(unquote(urlsplit(address).path)).name
+        copy = Path(folder, re.sub(r"[^\w.-]", "_", name)[-100:].lstrip(".") or _UNNAMED)
         try:
             _copy(address, copy)
         except (OSError, ValueError, http.client.HTTPException) as error:
@@ -61,12 +62,6 @@ def download(path: str | os.PathLike[str]) -> Iterator[Path]:
             raise ReadError(f"Cannot read '{address}': {reason}.", path=Path(copy.name)) from error
         with naming_copy(copy, Path(copy.name)):
             yield copy
-
-
-def _find_name(address: str) -> str:
-    """Return the last part of an address as a name for a file."""
-    name = PurePosixPath(unquote(urlsplit(address).path)).name
-    return re.sub(r"[^\w.-]", "_", name)[-100:].lstrip(".") or _UNNAMED
 
 
 def _copy(address: str, copy: Path) -> None:

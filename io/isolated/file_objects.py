@@ -66,7 +66,15 @@ def writing_into(stream: Any, chosen: Format) -> Iterator[Path]:
     FormatError
         If the format has several files.
     """
-    _require_writable(stream, chosen)
+    try:
+        is_open = not getattr(stream, "closed", False) and stream.writable()
+    except ValueError:
+        is_open = False
+    if not is_open:
+        raise OptionError("path", stream, "a file object that can be written, or a name of a file")
+    if isinstance(stream, io.TextIOBase) and not chosen.is_text:
+        allowed = f"a file object of bytes, as the format {chosen.name} is binary"
+        raise OptionError("path", stream, allowed)
     with scratch_folder() as folder:
         path = folder / f"{_NAMELESS}{next(iter(chosen.suffixes), '')}"
         yield path
@@ -81,15 +89,3 @@ def writing_into(stream: Any, chosen: Format) -> Iterator[Path]:
             return
         with path.open("rb") as file:
             shutil.copyfileobj(file, stream, _CHUNK)
-
-
-def _require_writable(stream: Any, chosen: Format) -> None:
-    try:
-        is_open = not getattr(stream, "closed", False) and stream.writable()
-    except ValueError:
-        is_open = False
-    if not is_open:
-        raise OptionError("path", stream, "a file object that can be written, or a name of a file")
-    if isinstance(stream, io.TextIOBase) and not chosen.is_text:
-        allowed = f"a file object of bytes, as the format {chosen.name} is binary"
-        raise OptionError("path", stream, allowed)

@@ -19,8 +19,6 @@ from .selection import Asked
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from .selection import Selection
-
 
 @taking(Asked)
 def describe(path: Path, asked: Asked) -> SourceHeader:
@@ -37,7 +35,8 @@ def describe(path: Path, asked: Asked) -> SourceHeader:
         bounds=_find_bounds(cloud),
         crs=head.crs,
         elevation_unit=head.elevation_unit,
-        obstacle=_find_obstacle(cloud) or _find_thinning(cloud.selection),
+        obstacle=_find_obstacle(cloud)
+        or ("is thinned by the option `every`, all over" if cloud.selection.every > 1 else ""),
         records=" and ".join(dict.fromkeys(one.header.records_format for one in tiles)),
         notes=tuple(dict.fromkeys(notes)),
     )
@@ -70,11 +69,6 @@ def _find_obstacle(cloud: Cloud) -> str:
     if selection.window is not None or selection.resolution is not None:
         return "is read by the options `window` or `resolution` already"
     return ""
-
-
-def _find_thinning(selection: Selection) -> str:
-    """Return why points cannot be read by box where every so manyeth is taken."""
-    return "is thinned by the option `every`, all over" if selection.every > 1 else ""
 
 
 @taking(Asked)

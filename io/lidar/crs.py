@@ -89,7 +89,8 @@ def find_reference(header: Header, *, is_declared: bool) -> HeaderReference:
 
 
 def _find_reference(header: Header) -> HeaderReference:
-    keys = _read_keys(header)
+    rows = _list_keys(header)
+    keys = {key: value for key, place, _, value in rows if place == 0} if rows else None
     every = [CRS.of(text) for text in _read_texts(header)]
     named = [crs for crs in every if not _is_unnamed(crs)]
     if every and not named and keys is None:
@@ -163,12 +164,6 @@ def _is_from_the_centre(header: Header, error: TinsmithError) -> bool:
     low, high = _RADII
     is_on_earth = low < float(np.linalg.norm(header.middle)) < high
     return "Geocentric" in str(error) and is_on_earth and abs(header.middle[2]) > _HIGHEST
-
-
-def _read_keys(header: Header) -> dict[int, int] | None:
-    """Return the keys whose values are short numbers; None if there are no keys."""
-    rows = _list_keys(header)
-    return {key: value for key, place, _, value in rows if place == 0} if rows else None
 
 
 def _list_keys(header: Header) -> list[tuple[int, int, int, int]]:

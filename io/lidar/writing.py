@@ -112,7 +112,9 @@ def write(
     surface = require_writable(surface)
     laspy = optional.load("laspy", f"Writing {FILE}")
     _require_points(surface.points)
-    scaling = _choose_scaling(surface.points, _parse_scale(scale))
+    scaling = _choose_scaling(
+        surface.points, None if scale is None else as_length("scale", scale, or_none=True)
+    )
     attributes = surface.attributes if isinstance(surface, Survey) else {}
     columns = choose_columns(attributes)
     header = make_header(laspy, scaling, columns, surface.crs)
@@ -128,10 +130,6 @@ def write(
         with laspy.LasWriter(file, header, do_compress=is_compressed, closefd=False) as writer:
             write_points(laspy, writer, surface.points, columns, Progress(progress))
     require_crs(surface.crs, path)
-
-
-def _parse_scale(scale: float | None) -> float | None:
-    return None if scale is None else as_length("scale", scale, or_none=True)
 
 
 def _require_points(points: Float64Array) -> None:

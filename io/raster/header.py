@@ -83,7 +83,8 @@ class Header:
 def read_header(path: Path) -> Header:
     """Let a child open a raster, and return what it says of itself."""
     optional.require("rasterio", "Reading a raster")
-    limits = choose_limits(_measure_files(path))
+    sources = require_plain_sources(path) if is_virtual(path) else []
+    limits = choose_limits(sum(one.stat().st_size for one in [path, *sources] if one.is_file()))
     found = run_isolated(
         f"{_choose_reader(path)}:read_header", _name_for_gdal(path), path=path, limits=limits
     ).value
@@ -98,12 +99,6 @@ def _choose_reader(path: Path) -> str:
 def _name_for_gdal(path: Path) -> dict[str, Any]:
     """Return what names the file to GDAL: an absolute path is never a scheme or a prefix."""
     return {"path": os.path.abspath(path), "is_virtual": is_virtual(path)}  # noqa: PTH100 - links stay
-
-
-def _measure_files(path: Path) -> int:
-    """Return the bytes of a raster, those of the sources of a virtual one included."""
-    sources = require_plain_sources(path) if is_virtual(path) else []
-    return sum(one.stat().st_size for one in [path, *sources] if one.is_file())
 
 
 def stream_strips(

@@ -23,7 +23,6 @@ from .reading import choose_elevations, find_elevation_unit, find_middle
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
-    from pathlib import Path
 
     from ...base.arrays import AnyArray, BoolArray, Float64Array
     from ...base.crs import CrsLike, UnitLike
@@ -90,20 +89,15 @@ def read_raster(
     """
     file = as_path(path)
     require_local(path)
-    _require_file(file)
-    return _make_raster(
-        read_header(file), CRS.of(crs), Unit.of(elevation_unit), band, parse_nodata(nodata)
-    )
-
-
-def _require_file(path: Path) -> None:
-    """Refuse what is missing, may not be read, or gives its bytes only once."""
-    if is_pipe(path):
+    if is_pipe(file):
         raise ReadError(
             f"{FILE} is a pipe, and rows of a raster are read as they are asked for: write it to "
             "a file, and name that.",
         )
-    require_readable(path)
+    require_readable(file)
+    return _make_raster(
+        read_header(file), CRS.of(crs), Unit.of(elevation_unit), band, parse_nodata(nodata)
+    )
 
 
 def _make_raster(

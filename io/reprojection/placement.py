@@ -175,7 +175,12 @@ class Placing:
         source = self._source
         wanted = self._target if self._target is not None else source
         if source is None or wanted is None or source.is_same(wanted):
-            return _keep_in_place(points, wanted, self._unit)
+            unit = self._unit
+            vertical = None if wanted is None else wanted.vertical_unit
+            if vertical is None or unit is None or unit == vertical:
+                return Placed(points, wanted, vertical or unit, ())
+            note = f"Elevations were converted from {unit.name} to {vertical.name}."
+            return Placed(convert_elevations(points, unit, vertical), wanted, vertical, (note,))
         moved = reproject(points, source, wanted, unit=self._unit, first_row=self._count)
         return Placed(moved.points, wanted, moved.unit, moved.notes)
 
@@ -195,15 +200,6 @@ def _require_small_degrees(
         )
     outermost = [*both[:, :2].argmin(axis=0), *both[:, :2].argmax(axis=0)]
     return both[outermost]
-
-
-def _keep_in_place(points: Float64Array, crs: CRS | None, unit: Unit | None) -> Placed:
-    """Leave points where they are; elevations take the unit of the CRS's vertical axis."""
-    vertical = None if crs is None else crs.vertical_unit
-    if vertical is None or unit is None or unit == vertical:
-        return Placed(points, crs, vertical or unit, ())
-    note = f"Elevations were converted from {unit.name} to {vertical.name}."
-    return Placed(convert_elevations(points, unit, vertical), crs, vertical, (note,))
 
 
 def settle_unit(declared: Unit | None, found: Unit | None) -> Unit | None:

@@ -258,7 +258,9 @@ def _make_line_survey(
             "elevation cannot be breaklines: the option `where` leaves them out."
         )
     breaklines = _make_breaklines(survey.points, vertices, features)
-    return replace(_take_rows(survey, is_open), breaklines=breaklines)
+    attributes = {name: values[is_open] for name, values in survey.attributes.items()}
+    points = survey.points[is_open]
+    return replace(survey, points=points, attributes=attributes, breaklines=breaklines)
 
 
 def _find_closing(vertices: _Vertices) -> BoolArray:
@@ -279,11 +281,6 @@ def _make_breaklines(points: Float64Array, vertices: _Vertices, features: Layer)
         for line, name in zip(lines, names.tolist(), strict=True)
         if len(line) > 1
     ]
-
-
-def _take_rows(survey: Survey, keep: BoolArray) -> Survey:
-    attributes = {name: values[keep] for name, values in survey.attributes.items()}
-    return replace(survey, points=survey.points[keep], attributes=attributes)
 
 
 # -------------------------------------------------------------------------- triangles

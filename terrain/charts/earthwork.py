@@ -92,16 +92,11 @@ def earthwork_map(
         draw_shade(axes, shade, limits=_LIGHTS)
     _draw_difference(drawn, surface, difference)
     _draw_zero_line(axes, surface, draw_north_up(difference.zero_line))
-    drawn.write_caption(_write_caption(difference), size=10)
-    return drawn.figure
-
-
-def _write_caption(difference: Difference) -> str:
-    """Write the sums of the table of volumes, and those beyond the level of detection."""
     lines = [_write_sums(difference.volumes)]
     if _has_level(difference):
         lines.append(_write_beyond(difference.volumes))
-    return "\n".join(lines)
+    drawn.write_caption("\n".join(lines), size=10)
+    return drawn.figure
 
 
 def _has_level(difference: Difference) -> bool:

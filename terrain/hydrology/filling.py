@@ -89,7 +89,9 @@ def fill(tin: TIN) -> Filling:
         np.zeros(count, np.int64),
         ranks,
     )
-    ways = _list_ways(tin.edges.astype(np.int64), filling)
+    edges = tin.edges.astype(np.int64)
+    edges = edges[filling.levels[edges[:, 0]] == filling.levels[edges[:, 1]]]
+    ways = _Ways(np.append(edges[:, 0], edges[:, 1]), np.append(edges[:, 1], edges[:, 0]))
     exits = _cross_level_ground(tin, filling, ways)
     _cross_ponds(filling, ways, exits)
     spills = np.where(exits == NOWHERE, hierarchy.spill_vertices, exits)
@@ -105,11 +107,6 @@ class _Ways(NamedTuple):
     def choose(self, rows: BoolArray) -> _Ways:
         """Return some of them."""
         return _Ways(self.starts[rows], self.ends[rows])
-
-
-def _list_ways(edges: Int64Array, filling: Filling) -> _Ways:
-    edges = edges[filling.levels[edges[:, 0]] == filling.levels[edges[:, 1]]]
-    return _Ways(np.append(edges[:, 0], edges[:, 1]), np.append(edges[:, 1], edges[:, 0]))
 
 
 def _cross_level_ground(tin: TIN, filling: Filling, ways: _Ways) -> Int64Array:

@@ -57,7 +57,13 @@ def as_stationed(given: Any, tin: TIN, interval: Any, reach: Any) -> Stationed |
             if value is not None:
                 raise OptionError(name, value, "None where there is no axis")
         return None
-    axis = _as_one_axis(given, tin)
+    if not hasattr(given, "elements"):
+        features = as_features(given, "axis")
+        if features.kind != "lines" or len(features.offsets[0]) != 2:
+            raise LinesError(
+                f"The axis of a plan is one line, and there are {len(features)} {features.kind}."
+            )
+    axis = as_axis(given, tin.crs, 0.0, "axis")
     begin, end = _as_range(reach, axis)
     marked = _list_stations(interval, begin, end)
     places, directions = axis.measure(np.zeros(len(marked), np.int64), marked)
@@ -73,16 +79,6 @@ def as_stationed(given: Any, tin: TIN, interval: Any, reach: Any) -> Stationed |
     return Stationed(
         turn(line), turn(places), turn(directions), shown, (first, last), is_part, axis.notes
     )
-
-
-def _as_one_axis(given: Any, tin: TIN) -> Axis:
-    if not hasattr(given, "elements"):
-        features = as_features(given, "axis")
-        if features.kind != "lines" or len(features.offsets[0]) != 2:
-            raise LinesError(
-                f"The axis of a plan is one line, and there are {len(features)} {features.kind}."
-            )
-    return as_axis(given, tin.crs, 0.0, "axis")
 
 
 def _as_range(reach: Any, axis: Axis) -> tuple[float, float]:

@@ -212,7 +212,8 @@ def node_lines(near: NumberedPoints, inputs: BuildInputs, *, first_number: int) 
         As :func:`require_local`; if lines have no elevations, or cross and must not.
     """
     made = let_meet(near, inputs)
-    groups = _find_groups(inputs)
+    is_ring = inputs.lines.table.is_kind("boundary", "hole")
+    groups = np.where(is_ring, find_ring_groups(inputs, inputs.lines), -1)
     rings = _gather_rings(made.points, made.polylines, groups)
     return gather_lines(made, groups >= 0, rings, first_number=first_number)
 
@@ -244,12 +245,6 @@ def let_meet(near: NumberedPoints, inputs: BuildInputs) -> MeetingLines:
         np.append(numbers, np.full(len(noded.new_points), -1)),
         noded.polylines,
     )
-
-
-def _find_groups(inputs: BuildInputs) -> Int64Array:
-    """Return the group of each line, as in :mod:`..constraints.clipping`; -1 if it is no ring."""
-    is_ring = inputs.lines.table.is_kind("boundary", "hole")
-    return np.where(is_ring, find_ring_groups(inputs, inputs.lines), -1)
 
 
 def _find_places(xy: Float64Array) -> tuple[Float64Array, Int32Array]:

@@ -12,7 +12,7 @@ from ....base.georeference import find_axes
 from ....base.sentences import FILE, coordinate, counted
 from ....terrain import Alignment, Element
 from ..reference import Declared, choose_measures, require_own_crs
-from .model_space import ModelSpace, read_model_space
+from .model_space import read_model_space
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -60,7 +60,14 @@ def read_alignment(
     stated = found.stated
     require_own_crs(stated, declared)
     measures = choose_measures(stated, declared, sample=rows[:64, :2])
-    paths = _list_paths(found)
+    ends = np.cumsum(found.arrays["lengths"])[:-1]
+    places = np.split(found.arrays["lines"][:, :2], ends)
+    bulges = np.split(found.arrays["bulges"], ends)
+    paths = [
+        _Path(xy, own)
+        for xy, own in zip(places, bulges, strict=True)
+        if len(xy) > 1 and (xy != xy[0]).any()
+    ]
     if not paths:
         raise ReadError(f"{FILE} has no lines in the layers read.")
     joined = _join(paths)
@@ -80,17 +87,6 @@ def read_alignment(
         elevation_unit=measures.elevation_unit,
         notes=notes,
     )
-
-
-def _list_paths(found: ModelSpace) -> list[_Path]:
-    ends = np.cumsum(found.arrays["lengths"])[:-1]
-    places = np.split(found.arrays["lines"][:, :2], ends)
-    bulges = np.split(found.arrays["bulges"], ends)
-    return [
-        _Path(xy, own)
-        for xy, own in zip(places, bulges, strict=True)
-        if len(xy) > 1 and (xy != xy[0]).any()
-    ]
 
 
 def _join(paths: list[_Path]) -> _Path:

@@ -122,7 +122,18 @@ def _choose_surface(
 ) -> Surface | None:
     """Return the surface wanted, else the only one that has what is wanted; None if none has."""
     if wanted is not None:
-        return _find_surface(found, wanted)
+        named = [one for one in found.surfaces if one.name == wanted]
+        if len(named) > 1:
+            numbers = ", ".join(str(one.number) for one in named)
+            raise ReadError(
+                f"{FILE} has {len(named)} surfaces of the name {shown(wanted)}: choose one by its "
+                f"number in the file ({numbers})."
+            )
+        numbered = [one for one in found.surfaces if str(one.number) == str(wanted)]
+        if named or numbered:
+            return (named or numbered)[0]
+        allowed = _list_surfaces(found.surfaces) or "none: the file has no surface"
+        raise OptionError("surface", wanted, f"one of those in {FILE}, {allowed}")
     with_faces = [one for one in found.surfaces if one.n_visible]
     with_source = [one for one in found.surfaces if one.has_source]
     if content == "source":
@@ -135,21 +146,6 @@ def _choose_surface(
             "read by the option `surface`."
         )
     return fitting[0] if fitting else None
-
-
-def _find_surface(found: Content, wanted: str | int) -> Surface:
-    named = [one for one in found.surfaces if one.name == wanted]
-    if len(named) > 1:
-        numbers = ", ".join(str(one.number) for one in named)
-        raise ReadError(
-            f"{FILE} has {len(named)} surfaces of the name {shown(wanted)}: choose one by its "
-            f"number in the file ({numbers})."
-        )
-    numbered = [one for one in found.surfaces if str(one.number) == str(wanted)]
-    if named or numbered:
-        return (named or numbered)[0]
-    allowed = _list_surfaces(found.surfaces) or "none: the file has no surface"
-    raise OptionError("surface", wanted, f"one of those in {FILE}, {allowed}")
 
 
 def _list_surfaces(surfaces: list[Surface]) -> str:

@@ -155,11 +155,14 @@ def _make_option(one: FormatOption, name: str, flag: str, subject: str) -> Libra
     declared = flag
     if how.get("is_flag") and one.default is not False:
         declared = f"{flag}/--no-{flag.removeprefix('--')}"
+    plain = re.sub(r":\w+:`\.?(.*?)`", r"\1", one.text)
+    text = plain.replace("`", "")
+    is_stated = isinstance(one.default, str | int | float) and not isinstance(one.default, bool)
     made = LibraryOption(
         [declared, name],
         instead=one.name,
         default=None,
-        help=_word_help(one),
+        help=text + (f"  [default: {one.default}]" if is_stated else ""),
         **how,
     )
     vars(made)["subject"] = subject
@@ -202,14 +205,6 @@ def _find_words(one: FormatOption) -> tuple[str, ...]:
             return words
     listed = re.match(r"(\{.*?\})(, optional)?$", one.kind)
     return () if listed is None or "..." in one.kind else tuple(sorted(literal_eval(listed[1])))
-
-
-def _word_help(one: FormatOption) -> str:
-    """Return what the docstring says, with flags for the options that it names."""
-    plain = re.sub(r":\w+:`\.?(.*?)`", r"\1", one.text)
-    text = plain.replace("`", "")
-    is_stated = isinstance(one.default, str | int | float) and not isinstance(one.default, bool)
-    return text + (f"  [default: {one.default}]" if is_stated else "")
 
 
 _none_if_empty = parsed(lambda _, value: value or None)

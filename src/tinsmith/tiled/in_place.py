@@ -30,7 +30,7 @@ from .running import Fingerprint
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
-    from ..base.arrays import AnyArray, BoolArray, Float64Array, Int64Array
+    from ..base.arrays import BoolArray, Float64Array, Int64Array
     from ..base.policies import GroundReturns
     from ..io.registry import PointChunk, SourceHeader
 
@@ -388,7 +388,7 @@ class FileInPlace(Chunk):
         starts = np.flatnonzero(np.diff(blocks, prepend=-1))
         ends = np.append(starts[1:], len(blocks))
         return {
-            int(blocks[start]): _Block(found.choose(_copy(start, end)), cells[start:end].copy())
+            int(blocks[start]): _Block(found.choose(np.arange(start, end)), cells[start:end].copy())
             for start, end in zip(starts.tolist(), ends.tolist(), strict=True)
         }
 
@@ -405,7 +405,3 @@ class FileInPlace(Chunk):
                 "index is wrong. Read it without `in_place`.",
                 path=path,
             )
-
-
-def _copy(start: int, end: int) -> AnyArray:
-    return np.arange(start, end)

@@ -184,7 +184,12 @@ class PointStore:
         for number, met in self._find(boxes):
             chunk = self.chunks[number]
             found.append(chunk.read_boxes(boxes[met]))
-        return _sort(found)
+        if not found:
+            return NO_POINTS
+        points = np.concatenate([one.points for one in found])
+        numbers = np.concatenate([one.numbers for one in found])
+        order = np.argsort(numbers, kind="stable")
+        return NumberedPoints(points[order], numbers[order])
 
 
 def save_chunks(path: Path, chunks: list[Chunk]) -> None:
@@ -214,16 +219,6 @@ def _bound(discs: Discs) -> Float64Array:
     """Return boxes that hold discs, (k, 4)."""
     reach = discs.radii[:, None] * _ABOUT + 2.0**-40 * np.abs(discs.centers)
     return np.column_stack([discs.centers - reach, discs.centers + reach])
-
-
-def _sort(parts: list[NumberedPoints]) -> NumberedPoints:
-    """Join the points of chunks in order of their numbers; no number is in two of them."""
-    if not parts:
-        return NO_POINTS
-    points = np.concatenate([one.points for one in parts])
-    numbers = np.concatenate([one.numbers for one in parts])
-    order = np.argsort(numbers, kind="stable")
-    return NumberedPoints(points[order], numbers[order])
 
 
 def join_skeletons(parts: Sequence[NumberedPoints], bounds: Bounds) -> NumberedPoints:

@@ -182,7 +182,9 @@ def tiles(
     """
     choice("duplicates", duplicates, DuplicatePolicy)
     choice("crossing", crossing, CrossingPolicy)
-    _require_lines_of_tiles(options)
+    for name, why in _NOT_OF_TILES.items():
+        if options.get(name):
+            raise OptionError(name, options[name], f"left out for a surface in tiles: {why}")
     files = _list_files(paths, options.get("format"))
     if not isinstance(where, Mapping | None):
         raise OptionError("where", where, "a mapping of attributes to values")
@@ -203,13 +205,6 @@ def tiles(
         options=read | _choose_attributes(headers, wanted, read),
     )
     return cloud._take_lines(breaklines=breaklines, boundary=boundary, holes=holes)
-
-
-def _require_lines_of_tiles(options: Mapping[str, Any]) -> None:
-    """Refuse options of :func:`tinsmith.triangulate` that need all points at a time."""
-    for name, why in _NOT_OF_TILES.items():
-        if options.get(name):
-            raise OptionError(name, options[name], f"left out for a surface in tiles: {why}")
 
 
 def _choose_attributes(

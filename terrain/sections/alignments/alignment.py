@@ -480,7 +480,9 @@ class Alignment:
             coordinates = self.points_at(stations)
         else:
             profile = self.find_vertical(vertical)
-            stations = np.union1d(stations, _cut_vertical(profile, tolerance, stations))
+            at = profile.cut_into_chords(tolerance)
+            inner: Float64Array = at[(at > stations[0]) & (at < stations[-1])]
+            stations = np.union1d(stations, inner)
             elevations = profile.elevations_at(stations)
             if np.isnan(elevations).any():
                 allowed = (
@@ -693,12 +695,3 @@ def _describe_feet(feet: Feet) -> list[str]:
         are = inflect(f"{twofold} of {counted(count, 'point')} [is|are]", twofold)
         notes.append(f"{are} as near to another place: the first station was taken.")
     return notes
-
-
-def _cut_vertical(
-    vertical: VerticalAlignment, tolerance: float, stations: Float64Array
-) -> Float64Array:
-    """Return stations of a vertical alignment between which it lies within a tolerance."""
-    at = vertical.cut_into_chords(tolerance)
-    inner: Float64Array = at[(at > stations[0]) & (at < stations[-1])]
-    return inner

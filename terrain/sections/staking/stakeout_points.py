@@ -152,7 +152,12 @@ def stakeout(
     if any(stakes.descriptions):
         columns["description"] = stakes.descriptions
     columns["reason"] = _find_reasons(columns)
-    units = _list_units(columns, reference.crs, agreed.elevation_unit)
+    along = None if reference.crs is None else reference.crs.horizontal_unit
+    texts = ("point", "description", "reason")
+    height_unit = assume_elevation_unit(reference.crs, agreed.elevation_unit)
+    units = {
+        name: height_unit if name in _HEIGHTS else along for name in columns if name not in texts
+    }
     if unit is not None:
         columns, units = _convert(columns, units, Unit.of(unit), design.crs)
     notes += [*stakes.notes, *_describe_missing(columns), *_describe_coordinates(factor)]
@@ -284,15 +289,6 @@ def _find_reasons(columns: dict[str, Any]) -> Any:
     texts = np.empty(len(reasons), object)
     texts[:] = ["; ".join(one) or None for one in reasons]
     return texts
-
-
-def _list_units(columns: dict[str, Any], crs: CRS | None, up: Unit | None) -> dict[str, Any]:
-    along = None if crs is None else crs.horizontal_unit
-    texts = ("point", "description", "reason")
-    height_unit = assume_elevation_unit(crs, up)
-    return {
-        name: height_unit if name in _HEIGHTS else along for name in columns if name not in texts
-    }
 
 
 def _convert(

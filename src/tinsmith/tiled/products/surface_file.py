@@ -79,7 +79,7 @@ def join(
     work = folder / _JOINED
     shutil.rmtree(work, ignore_errors=True)
     work.mkdir()
-    stems = {key: _find_stem(folder, records[key]) for key in keys}
+    stems = {key: folder / next(iter(records[key].files)) for key in keys}
     asked = [stems[key].with_name(f"{key}{one}") for one in (_ROWS, _USED) for key in keys]
     made = [work / f"{path.name}{_NUMBERS}" for path in asked]
     chunks = open_store(points.folder).chunks
@@ -100,11 +100,6 @@ def join(
     return SurfaceBlocks(
         count, n_triangles, _cut(vertices), triangles, points.crs, points.elevation_unit
     )
-
-
-def _find_stem(folder: Path, record: Record) -> Path:
-    """Return a file of a tile, beside which the others are."""
-    return folder / next(iter(record.files))
 
 
 def _cut(vertices: Float64Array) -> Iterator[Float64Array]:

@@ -229,7 +229,10 @@ class Run:
         for one in there:
             if one.name not in before:
                 with suppress(OSError):
-                    _remove(one)
+                    if one.is_dir() and not one.is_symlink():
+                        shutil.rmtree(one)
+                    else:
+                        one.unlink()
 
     def _clear(self) -> None:
         """Empty the folder but for the lock.
@@ -291,13 +294,6 @@ class Run:
     def _write(self, name: str, values: Mapping[str, Any] | list[str]) -> None:
         with replacing(self.folder / name, binary=False) as file:
             json.dump(values, file, indent=1)
-
-
-def _remove(path: Path) -> None:
-    if path.is_dir() and not path.is_symlink():
-        shutil.rmtree(path)
-    else:
-        path.unlink()
 
 
 def _empty(folder: Path, *, keep: str = "") -> None:

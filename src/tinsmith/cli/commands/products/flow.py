@@ -71,7 +71,15 @@ def flow(file: Path, find: FlowProduct, job: Job, **asked: Any) -> None:
     """
     from ....base.results import tabulate_columns
 
-    _require_fitting(find, asked)
+    for name, (flag, products) in _FLAGS.items():
+        if asked[name] not in (None, False, ()) and find not in products:
+            raise click.UsageError(f"{flag} is for --find {products[0]}, not {find}.")
+    if find == "paths" and bool(asked["begins"]) == (asked["points"] is not None):
+        raise click.UsageError("Where drops fall is needed: --from X Y, or --points FILE.")
+    if asked["begins"] and asked["points"] is not None:
+        raise click.UsageError("Outlets are given by --from X Y, or by --points FILE: not by both.")
+    if find == "ponds" and asked["level"] is None:
+        raise click.UsageError("A level is needed for ponds: --level ELEVATION.")
     inputs = job.list_inputs(file, more=name_features(asked["points"], "the file of --points"))
     planned = job.plan(inputs, "Features", "Table")
     tin = job.read_tin(file)
@@ -84,18 +92,6 @@ def flow(file: Path, find: FlowProduct, job: Job, **asked: Any) -> None:
     for row in range(min(len(found), _SHOWN) if "angle" not in found.columns else 0):
         facts.add("" if row else "First", _describe_row(found, row))
     job.finish(planned, facts)
-
-
-def _require_fitting(find: str, asked: dict[str, Any]) -> None:
-    for name, (flag, products) in _FLAGS.items():
-        if asked[name] not in (None, False, ()) and find not in products:
-            raise click.UsageError(f"{flag} is for --find {products[0]}, not {find}.")
-    if find == "paths" and bool(asked["begins"]) == (asked["points"] is not None):
-        raise click.UsageError("Where drops fall is needed: --from X Y, or --points FILE.")
-    if asked["begins"] and asked["points"] is not None:
-        raise click.UsageError("Outlets are given by --from X Y, or by --points FILE: not by both.")
-    if find == "ponds" and asked["level"] is None:
-        raise click.UsageError("A level is needed for ponds: --level ELEVATION.")
 
 
 def _find(tin: TIN, find: str, asked: dict[str, Any], job: Job, progress: Tell) -> Features:

@@ -80,7 +80,17 @@ def interpolate(file: Path, points_file: Path, job: Job, **asked: Any) -> None:
         table = _interpolate(tin, points, asked, job)
         planned.write("Table", table)
         surface = mesh_counts(tin)
-    job.finish(planned, _list_facts(file, surface, table, asked))
+    elevations = table[asked["column"]]
+    outside = int((elevations != elevations).sum())
+    text = f"{outside:,} outside the surface, without elevation" if outside else "all inside"
+    if asked["extrapolate"]:
+        text = "elevations outside are those of the nearest point of the boundary"
+    facts = Facts(file)
+    facts.add("Surface", surface)
+    facts.add("Points", f"{len(table):,}, {text}", points=len(table), outside=outside)
+    facts.add("Method", asked["method"], method=asked["method"])
+    facts.note(table.notes)
+    job.finish(planned, facts)
 
 
 def _name_whole(asked: dict[str, Any]) -> str:
@@ -115,20 +125,6 @@ def _add_columns(points: QueryPoints, elevations: Any, unit: Any, asked: dict[st
         name="elevations",
         notes=points.notes,
     )
-
-
-def _list_facts(file: Path, surface: str, table: Table, asked: dict[str, Any]) -> Facts:
-    elevations = table[asked["column"]]
-    outside = int((elevations != elevations).sum())
-    text = f"{outside:,} outside the surface, without elevation" if outside else "all inside"
-    if asked["extrapolate"]:
-        text = "elevations outside are those of the nearest point of the boundary"
-    facts = Facts(file)
-    facts.add("Surface", surface)
-    facts.add("Points", f"{len(table):,}, {text}", points=len(table), outside=outside)
-    facts.add("Method", asked["method"], method=asked["method"])
-    facts.note(table.notes)
-    return facts
 
 
 # ---------------------------------------------------------------- the points

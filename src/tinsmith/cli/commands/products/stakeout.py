@@ -63,7 +63,18 @@ def stakeout(
     """
     from ....terrain import stakeout as list_stakes
 
-    _require_fitting(places, line_file, asked)
+    given = [f"--{name}" for name in ("stations", "interval") if asked[name] is not None]
+    ways = [*([] if places is None else ["--at"]), *given]
+    if len(ways) != 1:
+        raise click.UsageError(
+            "Points to set out are needed: one of --at, --stations and --interval."
+            if not ways
+            else f"{ways[0]} and {ways[1]} are both given: choose one."
+        )
+    if given and line_file is None:
+        raise click.UsageError(f"{given[0]} needs an axis: --line FILE.")
+    if asked["offsets"] is not None and not given:
+        raise click.UsageError("--offsets is for points at --stations or at an --interval.")
     job.ground_coordinates.require_fitting()
     surfaces = [design] if ground is None else [design, ground]
     more = name_features(line_file, "the file of --line")
@@ -92,21 +103,6 @@ def stakeout(
         facts.add(words, mesh_counts(tin))
     tell_factor(facts, factor)
     job.finish(planned, facts)
-
-
-def _require_fitting(places: Path | None, line_file: Path | None, asked: dict[str, Any]) -> None:
-    given = [f"--{name}" for name in ("stations", "interval") if asked[name] is not None]
-    ways = [*([] if places is None else ["--at"]), *given]
-    if len(ways) != 1:
-        raise click.UsageError(
-            "Points to set out are needed: one of --at, --stations and --interval."
-            if not ways
-            else f"{ways[0]} and {ways[1]} are both given: choose one."
-        )
-    if given and line_file is None:
-        raise click.UsageError(f"{given[0]} needs an axis: --line FILE.")
-    if asked["offsets"] is not None and not given:
-        raise click.UsageError("--offsets is for points at --stations or at an --interval.")
 
 
 def _read_places(path: Path, crs: Any) -> Features:
