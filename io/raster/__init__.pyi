@@ -5,4 +5,5 @@ from .ortho import read_ortho as read_ortho
 from .reading import LEFT_OUT as LEFT_OUT
 from .reading import is_raster as is_raster
 from .target_grid import read_cells as read_cells
+from .target_grid import take_cells as take_cells
 from .virtual import is_virtual as is_virtual

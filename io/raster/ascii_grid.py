@@ -12,6 +12,7 @@ from ...base.errors import OptionError, WriteError
 from ...base.notes import warn
 from ...base.sentences import FILE
 from ..registry import replacing_data_set
+from .cell_types import require_north_up
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -36,6 +37,8 @@ def write(
 
     Raises
     ------
+    FormatError
+        If rows do not run from north to south and columns to the east.
     OptionError
         If there is no such band, or several and none is named.
     WriteError
@@ -50,7 +53,10 @@ def write(
     -----
     Each number has the fewest digits that give the same double back. Cells without data, NaN and
     infinite ones have the raster's own value for no data, or -9999 where that is NaN.
+    Cells that are not square have ``dx`` and ``dy`` in the header, as GDAL writes and reads them;
+    ESRI's own programs read ``cellsize`` alone.
     """
+    require_north_up(raster, "a text grid")
     name = _choose_band(raster, band)
     nodata = raster.nodata if math.isfinite(raster.nodata) else _NODATA
     lost = [what for what, there in (("units", raster.units), ("notes", raster.notes)) if there]
@@ -80,9 +86,16 @@ def _choose_band(raster: Raster, band: str | None) -> str:
 def _format_head(raster: Raster, nodata: float) -> str:
     grid = raster.grid
     rows, columns = grid.shape
+    if isinstance(grid.spacing, tuple):  # as GDAL has it
+        size = "".join(
+            f"{name} {float(side)!r}\n"
+            for name, side in zip(("dx", "dy"), grid.spacing, strict=True)
+        )
+    else:
+        size = f"cellsize {float(grid.spacing)!r}\n"
     return (
         f"ncols {columns}\nnrows {rows}\nxllcorner {float(grid.bounds.xmin)!r}\n"
-        f"yllcorner {float(grid.bounds.ymin)!r}\ncellsize {float(grid.spacing)!r}\n"
+        f"yllcorner {float(grid.bounds.ymin)!r}\n{size}"
         f"NODATA_value {_format_number(nodata)}\n"
     )
 

@@ -9,13 +9,24 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ...base.checks import is_finite_number
-from ...base.errors import OptionError, WriteError, choice
+from ...base.errors import FormatError, OptionError, WriteError, choice
 from ...base.policies import CellType
 from ...base.sentences import FILE, height
 
 if TYPE_CHECKING:
     from ...base.arrays import AnyArray, BoolArray
     from ...base.results import Raster
+
+
+def require_north_up(raster: Raster, what: str) -> None:
+    """Refuse, by a FormatError, cells that a format cannot place; ``what`` it is for a sentence."""
+    if not raster.grid.is_north_up:
+        a, b, _, d, e, _ = raster.grid.transform
+        raise FormatError(
+            f"Cannot write {FILE}: {what} holds rows from north to south with columns from west to "
+            f"east, and the geotransform of this raster has {a:g}, {b:g}, {d:g}, {e:g}; GeoTIFF "
+            "holds any."
+        )
 
 
 def store_as(raster: Raster, dtype: CellType | None, nodata: float | None) -> Raster:

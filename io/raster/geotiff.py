@@ -214,9 +214,8 @@ def _write_tiles(
 
 
 def _make_profile(raster: Raster, compression: RasterCompression) -> dict[str, Any]:
-    (rows, columns), bounds, dtype = raster.shape, raster.grid.bounds, _choose_dtype(raster)
+    (rows, columns), dtype = raster.shape, _choose_dtype(raster)
     affine = optional.load("rasterio", f"Writing {FILE}").Affine
-    spacing = raster.grid.spacing
     tiles = {"tiled": True, "blockxsize": _TILE, "blockysize": _TILE}
     packing = {"compress": "deflate", "predictor": _choose_predictor(dtype), "zlevel": _LEVEL}
     return {
@@ -226,7 +225,7 @@ def _make_profile(raster: Raster, compression: RasterCompression) -> dict[str, A
         "count": len(raster.bands),
         "dtype": dtype.name,
         "crs": _make_gdal_crs(raster),
-        "transform": affine(spacing, 0.0, bounds.xmin, 0.0, -spacing, bounds.ymax),
+        "transform": affine(*raster.grid.transform),
         "nodata": _choose_nodata(raster, dtype),
         "interleave": "band",
         "bigtiff": "IF_SAFER",

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import os
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from ...base import optional
+from ...base.types import Affine
 from ..isolated import Limits, choose_limits, run_isolated, stream_isolated
 from .virtual import is_virtual, require_plain_sources
 
@@ -18,33 +19,6 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from ..isolated import Answer
-
-
-class Affine(NamedTuple):
-    """Easting is ``a * column + b * row + c``, northing ``d * column + e * row + f``."""
-
-    a: float
-    b: float
-    c: float
-    d: float
-    e: float
-    f: float
-
-    def apply(self, column: Any, row: Any) -> tuple[Any, Any]:
-        """Return easting and northing of places counted in columns and rows."""
-        return (
-            column * self.a + row * self.b + self.c,
-            column * self.d + row * self.e + self.f,
-        )
-
-    def invert(self) -> Affine:
-        """Return the transform from easting and northing to columns and rows."""
-        a, b, c, d, e, f = self
-        area = a * e - b * d
-        return Affine(
-            *(e / area, -b / area, (b * f - c * e) / area),
-            *(-d / area, a / area, (c * d - a * f) / area),
-        )
 
 
 @dataclass(frozen=True, slots=True)

@@ -16,8 +16,9 @@ from ...base.checks import require_type
 from ...base.errors import OptionError
 from ...base.notes import naming_file
 from ...base.results import Raster
+from ...base.types import Affine
 from .gdal_child import cut_strips, describe
-from .header import Affine, Header
+from .header import Header
 from .reading import Choice, make_survey
 
 if TYPE_CHECKING:
@@ -183,11 +184,10 @@ class _Cells:
 
 
 def _describe_raster(raster: Raster, name: str) -> _Cells:
-    bounds, spacing = raster.grid.bounds, raster.grid.spacing
     unit = raster.units.get(name)
     return _Cells(
         raster.bands[name],
-        (spacing, 0.0, bounds.xmin, 0.0, -spacing, bounds.ymax),
+        raster.grid.transform,
         name=raster.name or name,
         nodata=raster.nodata,
         unit=getattr(unit, "name", unit),

@@ -17,6 +17,7 @@ from ...base.crs import CRS, Unit
 from ...base.errors import OptionError, ReadError
 from ...base.progress import Progress
 from ...base.sentences import FILE, coordinate, counted
+from ...base.types import Affine
 from ...terrain.surface import trace_rings
 from ...tin import Bounds, Survey
 from ...tin.screening import ElevationSummary, parse_nodata
@@ -24,7 +25,7 @@ from ..door import names_its_file
 from ..isolated import measure_free_memory
 from ..registry import PointChunk, StreamEnd, StreamHead, gather, taking
 from ..reprojection import Placing, place, settle_unit, stays
-from .header import Affine, Header, read_header, stream_strips
+from .header import Header, read_header, stream_strips
 from .meaning import Meaning, find_meaning, settle_axes
 
 if TYPE_CHECKING:

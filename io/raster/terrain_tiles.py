@@ -25,6 +25,7 @@ from ...base.notes import warn
 from ...base.policies import TileEncoding, TileGaps
 from ...base.results import Raster
 from ...base.sentences import FILE, height
+from .cell_types import require_north_up
 from .geotiff import write as write_geotiff
 
 if TYPE_CHECKING:
@@ -96,7 +97,8 @@ def write(
     CrsError
         If the CRS is not known.
     FormatError
-        If the band holds no elevations.
+        If the band holds no elevations, or rows do not run from north to south and columns to the
+        east.
     MissingExtraError
         If pmtiles is not installed, and the archive is to be one.
     OptionError
@@ -116,6 +118,7 @@ def write(
     between the centres of four cells; a pixel of a coarser tile is the mean of four. Tiles without
     data are left out. Memory does not grow with the raster.
     """
+    require_north_up(raster, "an archive of tiles")
     code = _CODES[choice("tile_encoding", tile_encoding, TileEncoding)]
     choice("gaps", gaps, TileGaps)
     is_pmtiles = path.suffix.lower() == ".pmtiles"
@@ -276,9 +279,9 @@ class _Pyramid:
 
     def _measure_cell(self) -> float:
         """Return the shorter side of a cell in the middle, in Web Mercator."""
-        box, side = self._source.bounds, self._source.res[0]
+        box, (across, up) = self._source.bounds, self._source.res
         x, y = (box.left + box.right) / 2, (box.bottom + box.top) / 2
-        places = [x, x + side, x], [y, y, y + side]
+        places = [x, x + across, x], [y, y, y + up]
         (x, *xs), (y, *ys) = self._to_mercator.transform(*places)
         return min(math.dist((x, y), one) for one in zip(xs, ys, strict=True))
 
@@ -351,8 +354,8 @@ class _Pyramid:
         """Return the values of a tile where the cells that hold its pixels have some."""
         ways = (np.arange(_SIDE) + 0.5) * (size / _SIDE)
         x, y = self._from_mercator.transform(*np.meshgrid(left + ways, top - ways))
-        box, side, shape = self._source.bounds, self._source.res[0], self._source.shape
-        at = np.stack([box.top - y, x - box.left]) / side - 0.5
+        box, (across, up), shape = self._source.bounds, self._source.res, self._source.shape
+        at = np.stack([(box.top - y) / up, (x - box.left) / across]) - 0.5
         cells = np.array(shape)[:, None, None]
         inside = ((at >= -0.5) & (at < cells - 0.5)).all(axis=0)
         found = np.full((_SIDE, _SIDE), np.nan)

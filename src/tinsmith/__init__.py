@@ -29,7 +29,10 @@ register_methods(
 
 __getattr__, __dir__, __all__ = lazy_names(
     __name__,
-    {"rasterize": ".io.raster.target_grid"},  # reads the file of `like`, too
+    dict.fromkeys(  # they read the file of `like`, too
+        ("hillshade", "rasterize", "rasterize_canopy", "rasterize_counts", "rasterize_heights"),
+        ".io.raster.target_grid",
+    ),
 )
 __all__ += ["__version__"]
 

@@ -9,7 +9,8 @@ import numpy as np
 
 from ...base.crs import CRS
 from ...base.georeference import Axes, DrawnCRS, find_axes
-from ...base.results import Features, Raster
+from ...base.results import Features, Raster, find_turn
+from ...base.types import Grid
 from ...tin import Bounds, Survey
 from ...tin.surface import Surface
 
@@ -100,7 +101,13 @@ def turn_upright(rotation: Any) -> Any:
 
 
 def _turn_raster(raster: Raster, axes: Axes, crs: DrawnCRS) -> Raster:
-    """Return the same cells, row 0 the northernmost, column 0 the westernmost."""
+    """Return the same cells, row 0 the northernmost, column 0 the westernmost.
+
+    Rows of a rotated raster stay rows.
+    """
+    if not raster.grid.is_aligned:
+        return _turn_rotated(raster, axes, crs)
+    raster = turn_rows(raster)
     is_exchanged = axes.first in ("north", "south")
     across, up = axes.labels
     bands = {}
@@ -112,5 +119,25 @@ def _turn_raster(raster: Raster, axes: Axes, crs: DrawnCRS) -> Raster:
     box = raster.grid.bounds
     corners = axes.turn([(box.xmin, box.ymin), (box.xmax, box.ymax)])
     shape = next(iter(bands.values())).shape
-    grid = replace(raster.grid, bounds=Bounds.of(corners), shape=shape)
-    return replace(raster, bands=bands, grid=grid, crs=crs)
+    spacing = raster.grid.spacing
+    if isinstance(spacing, tuple) and is_exchanged:
+        spacing = spacing[::-1]
+    return replace(raster, bands=bands, grid=Grid(Bounds.of(corners), shape, spacing), crs=crs)
+
+
+def _turn_rotated(raster: Raster, axes: Axes, crs: DrawnCRS) -> Raster:
+    affine = raster.grid.transform
+    (a, d), (b, e), (c, f) = axes.turn(
+        [(affine.a, affine.d), (affine.b, affine.e), (affine.c, affine.f)]
+    ).tolist()
+    grid = Grid.of_transform((a, b, c, d, e, f), raster.grid.shape)
+    return replace(raster, grid=grid, crs=crs)
+
+
+def turn_rows(raster: Raster) -> Raster:
+    """Return a raster aligned with its axes with rows from north to south, columns to the east."""
+    grid, turn = raster.grid, find_turn(raster.grid)
+    if grid.is_north_up or not grid.is_aligned:
+        return raster
+    bands = {name: turn.of(np.asarray(band[:, :])) for name, band in raster.bands.items()}
+    return replace(raster, bands=bands, grid=Grid(grid.bounds, grid.shape, grid.spacing))

@@ -19,6 +19,7 @@ from .operators import GridMeasure as GridMeasure
 from .operators import OperatorBand as OperatorBand
 from .operators import describe_no_value as describe_no_value
 from .operators import make_measure as make_measure
+from .operators import require_aligned as require_aligned
 from .point_cells import CellBlock as CellBlock
 from .point_cells import add_cells as add_cells
 from .point_cells import count_points as count_points

@@ -9,7 +9,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ...base.errors import PointsError
-from ...base.results import locate_centers
+from ...base.results import find_turn, locate_all_centers, locate_centers
+from ...base.sentences import write_spacing
+from ...base.types import Grid
 from ...tin.validation import thread_count
 from .. import _kernel
 from .grids import as_parts, describe_extent, locate_edges
@@ -18,7 +20,7 @@ if TYPE_CHECKING:
     from ...base.arrays import Float64Array
     from ...base.policies import InterpolationMethod
     from ...base.progress import Progress, Tell
-    from ...tin import TIN, Grid
+    from ...tin import TIN
 
 _STRIP = 1 << 22
 """Cells whose centres are listed in one go, about: a bound on memory."""
@@ -74,7 +76,7 @@ class SurfaceBand:
     def _compute(self, rows: slice, columns: slice, progress: Tell | None) -> Float64Array:
         if rows.stop <= rows.start or columns.stop <= columns.start:
             return np.empty((max(0, rows.stop - rows.start), max(0, columns.stop - columns.start)))
-        if self._method == "linear":
+        if self._is_mean or (self._method == "linear" and self._grid.is_aligned):
             return self._scan(rows, columns, progress)
         block = np.empty((rows.stop - rows.start, columns.stop - columns.start))
         for strip in _list_strips(rows, columns):
@@ -89,32 +91,64 @@ class SurfaceBand:
         return self._scan_centers(rows, columns, progress)
 
     def _scan_centers(self, rows: slice, columns: slice, progress: Tell | None) -> Float64Array:
-        x, y = locate_centers(self._grid, rows, columns)
+        turn, (x, y, size) = find_turn(self._grid), self._list_lattice(rows, columns)
         threads = thread_count(self._threads, len(x) * len(y))
-        return self._drawn.values_at_centers(
-            x, y, self._grid.spacing, self._values, threads, progress
-        )
+        cells = self._drawn.values_at_centers(x, y, size, self._values, threads, progress)
+        return np.asarray(turn.of(cells))
+
+    def _list_lattice(
+        self, rows: slice, columns: slice
+    ) -> tuple[Float64Array, Float64Array, tuple[float, float]]:
+        """Return centres of columns from the west and of rows from the north, and a cell's size."""
+        turn = find_turn(self._grid)
+        x, y = locate_centers(self._grid, rows, columns)
+        return _order(x, turn.columns), _order(y, turn.rows), self._grid.cell_size
 
     def _scan_means(self, rows: slice, columns: slice, progress: Tell | None) -> Float64Array:
-        """Compute whole tiles of the raster, so that all blocks of it have the same bits."""
-        tiles = [_widen(part, side) for part, side in zip((rows, columns), self.shape, strict=True)]
-        x, y = locate_centers(self._grid, *tiles)
-        x_edges, y_edges = locate_edges(self._grid, *tiles)
-        found = self._drawn.means_of_cells(
-            x,
-            y,
-            self._grid.spacing,
-            x_edges,
-            y_edges,
+        """Compute whole tiles of the raster, so that all blocks of it have the same bits.
+
+        Rotated cells are upright squares among columns and rows, where the surface is drawn: a mean
+        is the same in any coordinates of which theirs are an affine function.
+        """
+        grid, turn = self._mean_grid, find_turn(self._grid)
+        asked = turn.of_parts((rows, columns), self.shape)
+        tiles = tuple(_widen(part, side) for part, side in zip(asked, self.shape, strict=True))
+        own = turn.of_parts((tiles[0], tiles[1]), self.shape)
+        x, y = locate_centers(grid, *own)
+        x_edges, y_edges = locate_edges(grid, *own)
+        found = self._mean_surface.means_of_cells(
+            _order(x, turn.columns),
+            _order(y, turn.rows),
+            grid.cell_size,
+            _order(x_edges, turn.columns),
+            _order(y_edges, turn.rows),
             self._values,
             thread_count(self._threads, len(x) * len(y)),
             progress,
         )
         down, across = (
             slice(part.start - tile.start, part.stop - tile.start)
-            for part, tile in zip((rows, columns), tiles, strict=True)
+            for part, tile in zip(asked, tiles, strict=True)
         )
-        return found[down, across]
+        return np.asarray(turn.of(found[down, across]))
+
+    @property
+    def _mean_grid(self) -> Grid:
+        """The cells whose means are computed: of a rotated grid those among columns and rows."""
+        if self._grid.is_aligned:
+            return self._grid
+        upright = (float(find_turn(self._grid).columns), 0.0, 0.0, 0.0, -1.0, 0.0)
+        return Grid.of_transform(upright, self.shape)
+
+    @cached_property
+    def _mean_surface(self) -> _kernel.GriddedSurface:
+        if self._grid.is_aligned:
+            return self._drawn
+        surface = self._tin.triangulation
+        column, row = self._grid.transform.locate(surface.points[:, 0], surface.points[:, 1])
+        along = find_turn(self._grid).columns * column
+        points = np.ascontiguousarray(np.column_stack([along, -row, surface.points[:, 2]]))
+        return _kernel.GriddedSurface(points, surface.triangles)
 
     @cached_property
     def _drawn(self) -> _kernel.GriddedSurface:
@@ -122,21 +156,31 @@ class SurfaceBand:
         return _kernel.GriddedSurface(surface.points, surface.triangles)
 
     def __getstate__(self) -> dict[str, Any]:
-        return {name: value for name, value in self.__dict__.items() if name != "_drawn"}
+        computed = ("_drawn", "_mean_surface")
+        return {name: value for name, value in self.__dict__.items() if name not in computed}
 
     def _ask(self, rows: slice, columns: slice) -> Float64Array:
-        x, y = locate_centers(self._grid, rows, columns)
-        xy = np.empty((len(y), len(x), 2))
-        xy[..., 0], xy[..., 1] = x, y[:, None]
-        places = xy.reshape(-1, 2)
-        found = self._tin.interpolate(places, method=self._method, threads=self._threads)
-        return found.reshape(len(y), len(x))
+        x, y = locate_all_centers(self._grid, rows, columns)
+        found = self._measure_at(np.stack([x, y], axis=-1).reshape(-1, 2))
+        return found.reshape(x.shape)
+
+    def _measure_at(self, places: Float64Array) -> Float64Array:
+        """Return the value at each of (k, 2) places, NaN outside the surface."""
+        if self._values is None:
+            return self._tin.interpolate(places, method=self._method, threads=self._threads)
+        triangle = self._tin.locate(places)
+        return np.where(triangle >= 0, self._values[triangle], np.nan)
 
 
 def _widen(part: slice, side: int) -> slice:
     """Return the rows, or columns, of all tiles that some rows lie in."""
     tile = _kernel.TILE_SIDE
     return slice(part.start // tile * tile, min(side, -(-part.stop // tile) * tile))
+
+
+def _order(values: Float64Array, step: int) -> Float64Array:
+    """Return coordinates in the other order, or as they are."""
+    return values if step > 0 else np.ascontiguousarray(values[::-1])
 
 
 def _list_strips(rows: slice, columns: slice) -> Iterator[slice]:
@@ -162,8 +206,8 @@ def require_covered(tin: TIN, grid: Grid, *, is_mean: bool = False) -> None:
             return
     what = "part of a cell" if is_mean else "centre of a cell"
     raise PointsError(
-        f"No {what} lies on the surface: the cells are {grid.spacing:g} wide and cover "
-        f"{describe_extent(grid.bounds)}, the surface {describe_extent(tin.bounds)}."
+        f"No {what} lies on the surface: the cells are {write_spacing(grid.spacing)} wide and "
+        f"cover {describe_extent(grid.bounds)}, the surface {describe_extent(tin.bounds)}."
     )
 
 
@@ -171,12 +215,10 @@ def _sample_covers(tin: TIN, grid: Grid, is_mean: bool) -> bool:
     """Whether the cells at the middle of some triangles hold a part of the surface."""
     chosen = tin.triangles[:: max(1, len(tin.triangles) // _SAMPLE)]
     xy = tin.points[chosen, :2].mean(axis=1)
-    bounds, (rows, columns) = grid.bounds, grid.shape
-    from_corner = np.column_stack([xy[:, 0] - bounds.xmin, bounds.ymax - xy[:, 1]])
-    at = np.floor(from_corner / grid.spacing)  # column and row
+    rows, columns = grid.shape
+    at = np.floor(np.column_stack(grid.transform.locate(*xy.T)))  # column and row
     at = at[((at >= 0) & (at < (columns, rows))).all(axis=1)]
     if is_mean or len(at) == 0:
         return len(at) > 0
-    x = bounds.xmin + (at[:, 0] + 0.5) * grid.spacing
-    y = bounds.ymax - (at[:, 1] + 0.5) * grid.spacing
-    return bool((tin.locate(np.column_stack([x, y])) >= 0).any())
+    centers = np.column_stack(grid.transform.apply(*(at.T + 0.5)))
+    return bool((tin.locate(centers) >= 0).any())

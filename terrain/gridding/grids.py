@@ -13,10 +13,10 @@ from ...base.errors import OptionError, PointsError
 from ...base.georeference import require_same_crs
 from ...base.results import Raster, require_grid
 from ...base.sentences import coordinate, counted
-from ...base.types import Bounds, Grid
+from ...base.types import Affine, Bounds, Grid
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
 
     from ...base.arrays import Float64Array
     from ...tin import TIN, Survey
@@ -30,7 +30,7 @@ MOST_CELLS_IN_MEMORY = 2**31
 _MOST_PER_SIDE = 2**30
 
 _MOST_DRIFT = 1e-3
-"""Of a cell: so much the last cell may be off if cells are taken to be square and even."""
+"""Of a cell: so much the last cell may be off if cells are taken to be even."""
 
 _FINEST = 2.0**9 * np.finfo(np.float64).eps
 """A cell has so much of the largest coordinate at least, so that centres are told apart."""
@@ -57,9 +57,9 @@ def as_grid(
     Cells, a rasterio data set or an object of xarray; ``in_memory`` tells whether all cells are to
     be held at a time.
 
-    Raises OptionError unless exactly one is given, or if it has too many, too small or no square
-    cells; CrsError if the other raster has another CRS; PointsError if the cells are not where the
-    surface is.
+    Raises OptionError unless exactly one is given, or if it has too many or too small cells, or
+    some without area; CrsError if the other raster has another CRS; PointsError if the cells are
+    not where the surface is.
     """
     given = {"spacing": spacing, "like": like, "grid": grid}
     named = [name for name, value in given.items() if value is not None]
@@ -99,7 +99,8 @@ def as_one_grid(grid: Any) -> Grid:
     """Return a Grid whose numbers fit together."""
     if not isinstance(grid, Grid):
         raise OptionError("grid", grid, "a Grid")
-    as_length("spacing", grid.spacing)
+    if not isinstance(grid.spacing, tuple):
+        as_length("spacing", grid.spacing)
     require_grid(grid)
     return grid
 
@@ -115,13 +116,22 @@ def _require_telling(spacing: float, bounds: Bounds) -> None:
 
 def require_cells(grid: Grid, *, in_memory: bool) -> None:
     """Refuse, by an OptionError, cells that are too many, or too small for the coordinates."""
-    _require_telling(grid.spacing, grid.bounds)
+    _require_telling(_measure_least(grid), grid.bounds)
     rows, columns = (int(side) for side in grid.shape)
     most = MOST_CELLS_IN_MEMORY if in_memory else MOST_CELLS
     if rows * columns > most or max(rows, columns) > _MOST_PER_SIDE:
         size = f"{counted(rows, 'row')} by {counted(columns, 'column')}"
         allowed = f"at most {most:,}, not {size}"
         raise OptionError("spacing", rows * columns, allowed, what="number of cells")
+
+
+def _measure_least(grid: Grid) -> float:
+    """Return the least distance of opposite sides of a cell."""
+    width, height = grid.cell_size
+    if grid.is_aligned:
+        return min(width, height)
+    a, b, _, d, e, _ = grid.transform
+    return abs(a * e - b * d) / max(width, height)
 
 
 def require_overlap(cells: Bounds, bounds: Bounds) -> None:
@@ -155,7 +165,7 @@ def describe_extent(bounds: Bounds) -> str:
 def as_cells(like: Any) -> Cells:
     """Return the cells of another raster.
 
-    Raises OptionError if it is none, or has no north-up square cells.
+    Raises OptionError if it is none, or its cells have no area.
     """
     if isinstance(like, Cells):
         return like
@@ -174,23 +184,28 @@ def as_cells(like: Any) -> Cells:
 def to_grid(transform: Sequence[float], shape: Sequence[int], what: Any = "raster") -> Grid:
     """Return the grid of a raster with six numbers of georeference, as rasterio has them.
 
-    Easting is ``a * column + b * row + c``, northing ``d * column + e * row + f``; ``shape`` is
-    rows and columns. Raises OptionError, of ``what``, if cells are turned, not square, or have no
-    finite size.
+    ``shape`` is rows and columns. Raises OptionError, of ``what``, if cells have no area, or
+    corners are not finite.
     """
-    a, b, west, d, e, north = (float(number) for number in transform)
-    rows, columns = (int(side) for side in shape)
-    drift = abs(a + e) * max(rows, columns)
-    is_upright = b == 0.0 == d and a > 0.0 and math.isfinite(a + west + north)
-    if not (is_upright and drift <= _MOST_DRIFT * a):
-        size = f"{a:g} by {-e:g}"
-        raise OptionError("like", what, f"a north-up raster of square cells (these are {size})")
-    bounds = Bounds(west, north - rows * a, west + columns * a, north)
-    return Grid(bounds, shape=(rows, columns), spacing=a)
+    try:
+        return Grid.of_transform(transform, shape)
+    except OptionError as error:
+        numbers = ", ".join(f"{float(number):g}" for number in transform)
+        allowed = f"a raster whose cells have an area (its geotransform is {numbers})"
+        raise OptionError("like", what, allowed) from error
 
 
 def _take_coordinates(like: Any) -> Cells:
-    """Return the cells of an object of xarray, whose coordinates x and y are the centres."""
+    """Return the cells of an object of xarray, whose coordinates x and y are the centres.
+
+    One without them has the geotransform that its grid mapping holds, as rioxarray writes it.
+    """
+    named = like.coords["spatial_ref"].attrs if "spatial_ref" in like.coords else {}
+    crs = CRS.of(named.get("crs_wkt"))
+    written = _read_transform(named)
+    if written is not None and {"y", "x"} <= set(like.dims) and "x" not in like.coords:
+        shape = like.sizes["y"], like.sizes["x"]
+        return Cells(to_grid(written, shape, like), crs)
     names = [name for name in ("x", "y") if name in like.coords]
     sides = [np.asarray(like.coords[name].values, np.float64) for name in names]
     if len(names) != 2 or any(side.ndim != 1 or len(side) < 2 for side in sides):
@@ -202,18 +217,36 @@ def _take_coordinates(like: Any) -> Cells:
         if not off <= _MOST_DRIFT * abs(step):
             raise OptionError("like", like, "a data set of xarray with even steps of x and y")
     across, up = (float(step) for step in steps)
-    transform = (across, 0.0, float(x[0]) - across / 2, 0.0, up, float(y[0]) - up / 2)
-    named = like.coords["spatial_ref"].attrs if "spatial_ref" in like.coords else {}
-    return Cells(to_grid(transform, (len(y), len(x)), like), CRS.of(named.get("crs_wkt")))
+    found = Affine(across, 0.0, float(x[0]) - across / 2, 0.0, up, float(y[0]) - up / 2)
+    if written is not None and _is_about(written, found, max(len(x), len(y))):
+        found = written
+    return Cells(to_grid(found, (len(y), len(x)), like), crs)
+
+
+def _read_transform(named: Mapping[str, Any]) -> Affine | None:
+    """Return the geotransform of a grid mapping, in the order of GDAL there; None without one."""
+    try:
+        west, a, b, north, d, e = (float(word) for word in str(named["GeoTransform"]).split())
+    except (KeyError, ValueError):
+        return None
+    return Affine(a, b, west, d, e, north)
+
+
+def _is_about(written: Affine, found: Affine, count: int) -> bool:
+    """Whether a geotransform is that of the coordinates, but for rounding, of so many cells."""
+    off = np.abs(np.subtract(written, found))
+    most = _MOST_DRIFT * np.array([abs(found.a)] * 3 + [abs(found.e)] * 3)
+    return bool((off * [count, count, 1.0, count, count, 1.0] <= most).all())
 
 
 def locate_edges(grid: Grid, rows: slice, columns: slice) -> tuple[Float64Array, Float64Array]:
     """Return eastings of the sides of columns, and northings of the sides of rows."""
+    affine = grid.transform
     x, y = (
-        np.arange(part.start, part.stop + 1, dtype=np.float64) * grid.spacing
-        for part in (columns, rows)
+        np.arange(part.start, part.stop + 1, dtype=np.float64) * side
+        for part, side in ((columns, affine.a), (rows, affine.e))
     )
-    return grid.bounds.xmin + x, grid.bounds.ymax - y
+    return affine.c + x, affine.f + y
 
 
 def as_parts(key: Any, shape: Sequence[int]) -> tuple[slice, slice]:

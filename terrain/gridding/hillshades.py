@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -29,6 +29,7 @@ def hillshade(
     tin: TIN,
     *,
     spacing: float | None = None,
+    like: Any = None,
     grid: Grid | None = None,
     azimuth: float = 315.0,
     altitude: float = 45.0,
@@ -43,6 +44,8 @@ def hillshade(
     spacing : float, CRS units, optional
         Side of a cell; default such that the longer side has about 1000. The grid begins at
         multiples of it.
+    like : Raster, path-like, file object, or data set of rasterio or xarray, optional
+        Take the cells of another raster, as :func:`tinsmith.rasterize`.
     grid : Grid, optional
         The cells themselves, instead of ``spacing``.
     azimuth : float, degrees
@@ -66,8 +69,8 @@ def hillshade(
     Raises
     ------
     OptionError
-        If a number is out of range, spacing and grid are both given, or there would be more than
-        2^31 cells.
+        If a number is out of range, more than one of spacing, like and grid is given, or there
+        would be more than 2^31 cells.
     PointsError
         If no cell would have a value: the cells are not where the surface is.
 
@@ -87,12 +90,12 @@ def hillshade(
     """
     require_tin(tin)
     light, factor = as_light(azimuth, altitude), as_number("exaggeration", exaggeration, above=0)
-    if spacing is not None and grid is not None:
+    if spacing is not None and (grid is not None or like is not None):
         raise OptionError("spacing", spacing, allowed="None where a grid is given")
     is_smooth, note = choose_smooth(tin, smooth)
-    if spacing is None and grid is None:
+    if spacing is None and grid is None and like is None:
         spacing = round_down(max(tin.bounds.width, tin.bounds.height) / _USUAL_SIDE)
-    cells, _ = as_grid(tin, spacing=spacing, grid=grid, in_memory=True)
+    cells, noted = as_grid(tin, spacing=spacing, like=like, grid=grid, in_memory=True)
     require_covered(tin, cells)
     lights = ReliefBand(tin, cells, PlaneMeasure("hillshade", light, factor), is_smooth=is_smooth)
     band, height = np.zeros(cells.shape, np.uint8), max(1, _BLOCK_CELLS // cells.shape[1])
@@ -106,5 +109,5 @@ def hillshade(
         crs=None if tin.crs is None else tin.crs.horizontal,
         nodata=0,
         name="hillshade",
-        notes=[*describe_unknown(tin.crs, tin.elevation_unit), note],
+        notes=[*describe_unknown(tin.crs, tin.elevation_unit), *noted, note],
     )

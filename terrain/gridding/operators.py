@@ -17,8 +17,8 @@ from ...base.crs import CRS, Unit
 from ...base.errors import OptionError, PointsError, choice
 from ...base.georeference import find_axes, find_scales
 from ...base.policies import GridOperator, NeighborhoodValue, PlaneValue, RasterValue
-from ...base.results import locate_centers
-from ...base.sentences import counted
+from ...base.results import find_turn, locate_centers
+from ...base.sentences import counted, write_spacing
 from ..surface import NORTHWEST, Derivatives, Light, PlaneMeasure, measure_curvatures
 from .grids import as_parts
 
@@ -136,8 +136,20 @@ def describe_no_value(measure: GridMeasure, grid: Grid) -> str:
     rows, columns = grid.shape
     return (
         f"No cell has a value of {measure.value}, for which it needs {need}: the raster has "
-        f"{counted(rows, 'row')} and {counted(columns, 'column')} of cells {grid.spacing:g} wide."
+        f"{counted(rows, 'row')} and {counted(columns, 'column')} of cells "
+        f"{write_spacing(grid.spacing)} wide."
     )
+
+
+def require_aligned(measure: GridMeasure | None, grid: Grid) -> None:
+    """Refuse, by an OptionError, operators whose neighbours lie to the east and north elsewhere."""
+    if measure is None or grid.is_aligned or (measure.value, measure.operator) in _RUGGEDNESS:
+        return
+    what = "rotated or sheared cells, whose neighbours are not to the east and north of them"
+    if measure.value in _OF_PLANES:
+        raise OptionError("operator", measure.operator, f"None for {measure.value} of {what}")
+    others = ", ".join(("elevation", *_OF_PLANES, *(name for name, _ in _RUGGEDNESS)))
+    raise OptionError("value", measure.value, f"one of {others} for {what}")
 
 
 class OperatorBand:
@@ -189,20 +201,25 @@ class OperatorBand:
         if np.nanmax(np.abs(z[4]), initial=0.0) > _LARGEST:
             raise PointsError(_OVERFLOW)
         measure = self._measure
+        if (measure.value, measure.operator) in _RUGGEDNESS:
+            return self._measure_ruggedness(z, is_known)
         y = locate_centers(self._grid, rows, columns)[1]
         scales = find_scales(measure.crs, measure.elevation_unit, y)
-        steps = [np.reshape(side * self._grid.spacing, (-1, 1)) for side in scales[:2]]
+        steps = [
+            np.reshape(scale * side, (-1, 1))
+            for scale, side in zip(scales[:2], self._grid.cell_size, strict=True)
+        ]
         with np.errstate(over="ignore", invalid="ignore"):  # refused below
             if measure.value in _OF_PLANES:
                 found = _measure_planes(z, (steps[0], steps[1]), scales.up, measure)
-            elif measure.value in _CURVATURES:
-                found = _measure_curvature(z, (steps[0], steps[1]), scales.up, measure)
             else:
-                found = _RUGGEDNESS[measure.value, measure.operator](z)
-        if np.isinf(found).any():
-            raise PointsError(_OVERFLOW)
-        found[~is_known] = np.nan
-        return found
+                found = _measure_curvature(z, (steps[0], steps[1]), scales.up, measure)
+        return _require_finite(found, is_known)
+
+    def _measure_ruggedness(self, z: list[Float64Array], is_known: Any) -> Float64Array:
+        with np.errstate(over="ignore", invalid="ignore"):
+            found = _RUGGEDNESS[self._measure.value, self._measure.operator](z)
+        return _require_finite(found, is_known)
 
     def _list_neighbors(self, rows: slice, columns: slice) -> tuple[list[Float64Array], Any]:
         """Return elevations of cells and neighbours, and which cells have all that are needed.
@@ -219,7 +236,9 @@ class OperatorBand:
         is_known = ~np.isnan(z[4])
         for one in z:
             is_known &= ~np.isnan(one)
-        return z, is_known
+        turn = find_turn(self._grid)
+        order = np.arange(9).reshape(3, 3)[:: turn.rows, :: turn.columns].ravel()
+        return [z[k] for k in order], is_known
 
     def _read_around(self, rows: slice, columns: slice) -> Float64Array:
         """Return elevations of cells with one more on each side, beyond the rim NaN or straight."""
@@ -251,6 +270,14 @@ class OperatorBand:
                     z[k][row, 0] = z[k + 1][row, 0]
                 if columns.stop == width:
                     z[k + 2][row, -1] = z[k + 1][row, -1]
+
+
+def _require_finite(found: Float64Array, is_known: Any) -> Float64Array:
+    """Return values where they are known, NaN elsewhere; refuse an overflow."""
+    if np.isinf(found).any():
+        raise PointsError(_OVERFLOW)
+    found[~is_known] = np.nan
+    return found
 
 
 # ------------------------------------------------------------------------------ formulas

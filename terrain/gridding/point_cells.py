@@ -33,7 +33,8 @@ def locate_cells(grid: Grid, points: Float64Array) -> tuple[Int64Array, Int64Arr
     """Return rows and columns of the cells that hold points, (n, 2 or more); -1 outside the grid.
 
     Of a point on the side between two cells it is the eastern or the southern one, as of
-    ``rasterio.transform.rowcol``; on the rim of the grid it is the cell within.
+    ``rasterio.transform.rowcol`` where the grid is north up; on the rim of the grid it is the cell
+    within. In a rotated grid it is the one with the larger number.
 
     Examples
     --------
@@ -42,20 +43,30 @@ def locate_cells(grid: Grid, points: Float64Array) -> tuple[Int64Array, Int64Arr
     >>> locate_cells(grid, np.array([[1.0, 1.0], [2.0, 0.0], [0.5, 2.0], [2.5, 1.0]]))
     (array([ 1,  1,  0, -1]), array([ 1,  1,  0, -1]))
     """
-    box, (height, width) = grid.bounds, grid.shape
+    box, (height, width), affine = grid.bounds, grid.shape, grid.transform
     reach = max(map(abs, (box.xmin, box.ymin, box.xmax, box.ymax)))
     slack = _ROUNDINGS * math.ulp(reach)
     x, y = points[:, 0], points[:, 1]
     near = (x >= box.xmin - slack) & (x <= box.xmax + slack)
     near &= (y >= box.ymin - slack) & (y <= box.ymax + slack)
-    rows = _find_steps(box.ymax - y, grid.spacing, height, near)
-    columns = _find_steps(x - box.xmin, grid.spacing, width, near)
-    return rows, columns
+    across, down = affine.locate(x, y)
+    if not grid.is_aligned:  # the box holds more than the cells
+        a, b, _, d, e, _ = affine
+        beyond = slack * max(grid.cell_size) / abs(a * e - b * d)
+        near &= (across >= -beyond) & (across <= width + beyond)
+        near &= (down >= -beyond) & (down <= height + beyond)
+        return _find_steps(down, height, near), _find_steps(across, width, near)
+    rows = _find_steps(down, height, near, is_turned=affine.e > 0.0)
+    return rows, _find_steps(across, width, near, is_turned=affine.a < 0.0)
 
 
-def _find_steps(offsets: Float64Array, spacing: float, count: int, near: BoolArray) -> Int64Array:
-    steps = np.full(len(offsets), -1, np.int64)
-    steps[near] = np.clip(np.floor(offsets[near] / spacing), 0, count - 1).astype(np.int64)
+def _find_steps(
+    places: Float64Array, count: int, near: BoolArray, *, is_turned: bool = False
+) -> Int64Array:
+    """Return whole steps to places; what is between two is in the latter, turned in the former."""
+    steps = np.full(len(places), -1, np.int64)
+    whole = np.ceil(places[near]) - 1.0 if is_turned else np.floor(places[near])
+    steps[near] = np.clip(whole, 0, count - 1).astype(np.int64)
     return steps
 
 

@@ -14,7 +14,7 @@ from ...base.results import Raster
 from ..surface import PlaneMeasure, as_light
 from .bands import SurfaceBand, require_covered
 from .grids import as_grid
-from .operators import GridMeasure, OperatorBand, make_measure
+from .operators import GridMeasure, OperatorBand, make_measure, require_aligned
 from .relief_bands import ReliefBand, choose_smooth
 
 if TYPE_CHECKING:
@@ -53,9 +53,10 @@ def rasterize(
     spacing : float, optional
         Side of a square cell, CRS units. The cells' edges lie at its multiples, and they cover the
         bounds of the TIN.
-    like : Raster, str, os.PathLike, or data set of rasterio or xarray, optional
-        Take the cells of another raster, or of a raster file (a plain local one; of
-        :func:`tinsmith.rasterize` only).
+    like : Raster, path-like, file object, or data set of rasterio or xarray, optional
+        Take the cells of another raster, or of a raster file (a local one): its geotransform,
+        rows and columns. They may be rectangles, rotated or sheared, and rows may run from south to
+        north.
     grid : Grid, optional
         Take these cells. One of the three is needed.
     method : {"linear", "nearest", "laplace", "natural", "c1"}
@@ -106,9 +107,9 @@ def rasterize(
     Raises
     ------
     OptionError
-        If not exactly one of ``spacing``, ``like`` and ``grid`` is given, cells are not square,
+        If not exactly one of ``spacing``, ``like`` and ``grid`` is given, cells have no area, are
         too small for the coordinates or too many (2^31, lazily 10^11), a mean is asked for that is
-        not exact, or another option is none.
+        not exact, an operator of cells that are rotated or sheared, or another option is none.
     CrsError
         If the other raster has another CRS, or that of the TIN is not known.
     PointsError
@@ -121,18 +122,23 @@ def rasterize(
     Notes
     -----
     The centre of the cell in row r and column c lies at ``xmin + (c + 0.5) * spacing``,
-    ``ymax - (r + 0.5) * spacing``. Values there equal those of :meth:`tinsmith.TIN.interpolate` to
+    ``ymax - (r + 0.5) * spacing``, or where the geotransform of the grid has column ``c + 0.5``
+    and row ``r + 0.5``. Values there equal those of :meth:`tinsmith.TIN.interpolate` to
     the last bit; an elevation on an edge is that of the triangle with the smaller number, as for
     :meth:`tinsmith.TIN.locate`. Slope, aspect and hillshade on an edge are those of the mean
     gradient of both sides, at a vertex those of ``tinsmith.slope(tin, per="vertex")``: cells of a
     DEM have the slopes of its vertices. Whether a centre lies on an edge or a vertex is decided
     exactly, and the order of points and triangles changes nothing. Means are integrals over the
     triangles' parts of a cell, clipped exactly but for rounding; a cell that the surface touches in
-    points or lines only has none. Elevations are in the unit of the TIN's.
+    points or lines only has none. Those of rotated cells are computed among columns and rows, where
+    the vertices are rounded once. Elevations are in the unit of the TIN's.
 
     With an operator, ``method`` and ``at`` tell which elevations of cells it is applied to.
     Gradients [1]_ [2]_ and curvatures take both units into account; degrees count as their length
-    on the ellipsoid in each row of cells. Curvatures [2]_ are those of the polynomial through nine
+    on the ellipsoid in each row of cells. Cells that are not square have their width and height, as
+    of gdaldem, and rows from south to north the values of those from north to south; cells that are
+    rotated or sheared have no neighbours to the east and north, and only ruggedness, position and
+    roughness are computed of them. Curvatures [2]_ are those of the polynomial through nine
     elevations by the formulas of :func:`tinsmith.curvature`: the profile and plan curvatures that
     Zevenbergen and Thorne print, and ArcGIS has, are second derivatives along and across the slope,
     which differ by factors of the slope. Ruggedness is that of [3]_ or [4]_. A raster read as
@@ -177,6 +183,7 @@ def rasterize(
     )
     require_sample(method, value, at, smooth, of_cells)
     cells, notes = as_grid(tin, spacing=spacing, like=like, grid=grid, in_memory=not is_lazy)
+    require_aligned(of_cells, cells)
     is_mean = at == "mean"
     require_covered(tin, cells, is_mean=is_mean)
     noted: tuple[str, ...] = ()

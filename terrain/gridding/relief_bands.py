@@ -9,13 +9,14 @@ import numpy as np
 
 from ...base.checks import as_flag
 from ...base.errors import OptionError
-from ...base.results import locate_centers
+from ...base.results import find_turn
+from ...tin import predicates
 from ...tin.validation import thread_count
 from ..surface import compute_normals, normalise, sum_at_vertices
 from .bands import SurfaceBand
 
 if TYPE_CHECKING:
-    from ...base.arrays import Float64Array, Int32Array, Int64Array
+    from ...base.arrays import BoolArray, Float64Array, Int32Array, Int64Array
     from ...base.progress import Tell
     from ...tin import TIN, Grid
     from ..surface import PlaneMeasure
@@ -76,18 +77,63 @@ class ReliefBand(SurfaceBand):
         self._values = self._triangle_values if is_mean else None
 
     def _scan_centers(self, rows: slice, columns: slice, progress: Tell | None) -> Float64Array:
-        x, y = locate_centers(self._grid, rows, columns)
-        where = (x, y, self._grid.spacing)
+        x, y, size = self._list_lattice(rows, columns)
+        where, turn = (x, y, size), find_turn(self._grid)
         threads = thread_count(self._threads, len(x) * len(y))
         if self._is_smooth:
             unit = self._vertex_units
             normals = self._drawn.vectors_at_centers(*where, unit, threads, progress)
-            measure = self._measure._replace(exaggeration=1.0)  # which the normals have
-            return measure.of(normals.reshape(-1, 3)).reshape(normals.shape[:2])
+            cells = self._measure_units(normals.reshape(-1, 3)).reshape(normals.shape[:2])
+            return np.asarray(turn.of(cells))
         drawn = self._drawn.triangles_at_centers(*where, self._triangle_values, threads, progress)
         cells, places, parts = drawn
         self._mend_shared(cells.reshape(-1), places, parts)
-        return np.asarray(cells)
+        return np.asarray(turn.of(cells))
+
+    def _measure_units(self, units: Float64Array) -> Float64Array:
+        """Return the values of normals between those of vertices, which have the exaggeration."""
+        return self._measure._replace(exaggeration=1.0).of(units)
+
+    def _measure_at(self, places: Float64Array) -> Float64Array:
+        if self._is_smooth:
+            return self._measure_units(self._interpolate_units(places))
+        triangle = self._tin.locate(places).astype(np.int64)
+        found = np.full(len(places), np.nan)
+        inside = np.flatnonzero(triangle >= 0)
+        triangle = triangle[inside]
+        found[inside] = self._triangle_values[triangle]
+        on_side = self._find_sides(places[inside], triangle)
+        shared = on_side.any(axis=1)
+        at, held, sides = inside[shared], triangle[shared], on_side[shared]
+        is_vertex = sides.sum(axis=1) == 2
+        corner = np.where(is_vertex, np.argmin(sides, axis=1), np.argmax(sides, axis=1))
+        parts = held * _PARTS + corner + np.where(is_vertex, _FIRST_CORNER, 0)
+        self._mend_shared(found, at, parts)
+        return found
+
+    def _find_sides(self, places: Float64Array, triangle: Int64Array) -> BoolArray:
+        """Tell whether places lie on the sides of their triangles opposite each corner, exactly."""
+        corners = self._tin.triangles[triangle].astype(np.int64)
+        xy = predicates.columns(np.concatenate([self._tin.points[:, :2], places]))
+        own = len(self._tin.points) + np.arange(len(places))
+        signs = [
+            predicates.orientation(xy, start, end, own)
+            for start, end in (np.roll(corners, -k, axis=1)[:, 1:].T for k in range(3))
+        ]
+        found: BoolArray = np.column_stack(signs) == 0
+        return found
+
+    def _interpolate_units(self, places: Float64Array) -> Float64Array:
+        """Return normals that change evenly between those of the vertices; NaN outside."""
+        xyz = self._tin.points
+        return np.column_stack(
+            [
+                self._tin.replace(points=np.column_stack([xyz[:, :2], unit])).interpolate(
+                    places, threads=self._threads
+                )
+                for unit in self._vertex_units.T
+            ]
+        )
 
     def _mend_shared(self, cells: Float64Array, places: Int64Array, parts: Int64Array) -> None:
         """Write the values of centres on edges and vertices."""

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from ...base.errors import OptionError
-from ...base.results import locate_centers
+from ...base.results import locate_all_centers, locate_centers
 from ...base.types import Bounds
 from ..gridding import GridMeasure, OperatorBand, ReliefBand, SurfaceBand, locate_edges
 from ..surface import NORTHWEST, Light, PlaneMeasure
@@ -66,39 +66,87 @@ def find_cells(grid: Grid, box: Bounds) -> tuple[slice, slice]:
     """Return the rows and columns of cells whose centres lie in a box.
 
     Its west and south sides count, the others do not: of boxes that tile the plane each cell is in
-    one.
+    one. Of a grid that is rotated there may be others among them: :func:`compute_part` leaves these
+    out.
     """
+    if not grid.is_aligned:
+        return _find_rotated(grid, box)
     height, width = grid.shape
-    columns = slice(*(_count_before(grid, x, width, axis=0) for x in (box.xmin, box.xmax)))
-    north, south = (_count_before(grid, y, height, axis=1) for y in (box.ymax, box.ymin))
-    rows = slice(north, south)
+    columns = slice(*_count_before(grid, (box.xmin, box.xmax), width, axis=0))
+    rows = slice(*_count_before(grid, (box.ymin, box.ymax), height, axis=1))
     if rows.start >= rows.stop or columns.start >= columns.stop:
         return _NO_CELLS, _NO_CELLS
     return rows, columns
 
 
-def _count_before(grid: Grid, limit: float, count: int, axis: int) -> int:
-    """Return how many columns have their centres west of an easting, or rows not south of one.
+def _count_before(
+    grid: Grid, limits: tuple[float, float], count: int, axis: int
+) -> tuple[int, int]:
+    """Return how many columns, or rows, come before those with centres within limits, and to these.
 
     Centres are rounded, so it is they that are compared, of the cells that may be the last.
     """
-    if math.isinf(limit):
-        return count if (limit > 0) == (axis == 0) else 0
-    start = limit - grid.bounds.xmin if axis == 0 else grid.bounds.ymax - limit
-    guess = math.floor(min(max(start / grid.spacing, 0.0), count))
-    near = slice(max(0, guess - 2), min(count, guess + 3))
-    if axis == 0:
-        is_before = locate_centers(grid, _NO_CELLS, near)[0] < limit
-    else:
-        is_before = locate_centers(grid, near, _NO_CELLS)[1] >= limit
-    return near.start + int(np.count_nonzero(is_before))
+    affine = grid.transform
+    first, step = (affine.c, affine.a) if axis == 0 else (affine.f, affine.e)
+    found = []
+    for limit in limits if step > 0.0 else limits[::-1]:
+        if math.isinf(limit):
+            found.append(count if (limit > 0) == (step > 0) else 0)
+            continue
+        guess = math.floor(min(max((limit - first) / step, 0.0), count))
+        near = slice(max(0, guess - 2), min(count, guess + 3))
+        parts = (_NO_CELLS, near) if axis == 0 else (near, _NO_CELLS)
+        centers = locate_centers(grid, *parts)[axis]
+        is_before = centers < limit if step > 0.0 else centers >= limit
+        found.append(near.start + int(np.count_nonzero(is_before)))
+    return found[0], found[1]
 
 
-def find_reach(options: RasterOptions, rows: slice, columns: slice) -> Bounds:
+def _find_rotated(grid: Grid, box: Bounds) -> tuple[slice, slice]:
+    """Return the rows and columns that all cells with centres in a box lie in."""
+    held = _meet(box, grid.bounds)
+    if held.xmin > held.xmax or held.ymin > held.ymax:
+        return _NO_CELLS, _NO_CELLS
+    x = np.array([held.xmin, held.xmax, held.xmin, held.xmax])
+    y = np.array([held.ymin, held.ymin, held.ymax, held.ymax])
+    parts = [
+        slice(max(0, math.floor(at.min()) - 1), min(side, math.ceil(at.max()) + 1))
+        for at, side in zip(grid.transform.locate(x, y)[::-1], grid.shape, strict=True)
+    ]
+    if any(part.start >= part.stop for part in parts):
+        return _NO_CELLS, _NO_CELLS
+    return parts[0], parts[1]
+
+
+def _meet(box: Bounds, other: Bounds) -> Bounds:
+    return Bounds(
+        max(box.xmin, other.xmin),
+        max(box.ymin, other.ymin),
+        min(box.xmax, other.xmax),
+        min(box.ymax, other.ymax),
+    )
+
+
+def _find_rotated_reach(options: RasterOptions, box: Bounds) -> Bounds:
+    """Return the box around centres in a box, as far as the cells beside them reach."""
+    held, affine = _meet(box, options.grid.bounds), options.grid.transform
+    cells = 0.0 if options.at == "center" else 0.5
+    cells += 0.0 if options.of_cells is None else 1.0
+    across = cells * (abs(affine.a) + abs(affine.b))
+    up = cells * (abs(affine.d) + abs(affine.e))
+    return Bounds(held.xmin - across, held.ymin - up, held.xmax + across, held.ymax + up)
+
+
+def find_reach(
+    options: RasterOptions, rows: slice, columns: slice, box: Bounds | None = None
+) -> Bounds:
     """Return the box of which a part is needed for cells, one at least: that of their centres.
 
-    For means it is that of the cells. Values of cells and their neighbours need one cell more.
+    For means it is that of the cells. Values of cells and their neighbours need one cell more. Of
+    rotated cells only those are taken whose centres lie in ``box``.
     """
+    if not options.grid.is_aligned:
+        return _find_rotated_reach(options, box or options.grid.bounds)
     if options.of_cells is not None:
         rows, columns = (
             slice(max(0, part.start - 1), min(side, part.stop + 1))
@@ -106,7 +154,7 @@ def find_reach(options: RasterOptions, rows: slice, columns: slice) -> Bounds:
         )
     locate = locate_centers if options.at == "center" else locate_edges
     x, y = locate(options.grid, rows, columns)
-    return Bounds(float(x[0]), float(y[-1]), float(x[-1]), float(y[0]))
+    return Bounds(float(x.min()), float(y.min()), float(x.max()), float(y.max()))
 
 
 def compute_part(part: LocalTriangulation, box: Bounds, options: RasterOptions) -> RasterBlock:
@@ -121,17 +169,29 @@ def compute_part(part: LocalTriangulation, box: Bounds, options: RasterOptions) 
     box : Bounds
     options : RasterOptions
     """
-    return compute_block(part, *find_cells(options.grid, box), options)
+    return compute_block(part, *find_cells(options.grid, box), options, box)
 
 
 def compute_block(
-    part: LocalTriangulation, rows: slice, columns: slice, options: RasterOptions
+    part: LocalTriangulation,
+    rows: slice,
+    columns: slice,
+    options: RasterOptions,
+    box: Bounds | None = None,
 ) -> RasterBlock:
-    """Return some cells; ``part`` has all triangles that meet :func:`find_reach`, at least."""
+    """Return some cells; ``part`` has all triangles that meet :func:`find_reach`, at least.
+
+    Those of a rotated grid whose centres lie outside the box have no value here.
+    """
     shape = rows.stop - rows.start, columns.stop - columns.start
     if 0 in shape or not len(part.triangles):
         return RasterBlock(rows, columns, np.full(shape, np.nan))
-    return RasterBlock(rows, columns, _make_band(part, options)[rows, columns])
+    values = _make_band(part, options)[rows, columns]
+    if box is not None and not options.grid.is_aligned:
+        x, y = locate_all_centers(options.grid, rows, columns)
+        inside = (x >= box.xmin) & (x < box.xmax) & (y >= box.ymin) & (y < box.ymax)
+        values = np.where(inside, values, np.nan)
+    return RasterBlock(rows, columns, values)
 
 
 def _make_band(part: LocalTriangulation, options: RasterOptions) -> Any:
@@ -158,8 +218,9 @@ def join(blocks: Iterable[RasterBlock], options: RasterOptions) -> Float64Array:
     band = np.full(options.grid.shape, np.nan)
     count = 0
     for block in blocks:
-        band[block.rows, block.columns] = block.values
+        own = band[block.rows, block.columns]
+        np.fmax(own, block.values, out=own)  # of rotated cells others have some, too
         count += block.values.size
-    if count != band.size:
+    if count != band.size and options.grid.is_aligned:
         raise OptionError("blocks", count, f"all {band.size} cells, once each")
     return band

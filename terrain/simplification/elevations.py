@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from ...base.errors import OptionError, PointsError
-from ...base.results import locate_centers
+from ...base.results import locate_centers, require_square
 from ...base.types import seal
 
 if TYPE_CHECKING:
@@ -84,8 +84,9 @@ class Elevations:
         unit = raster.units.get(name)
         self.unit: Unit | str | None = unit
         self.shape = (int(raster.shape[0]), int(raster.shape[1]))
+        require_square(raster.grid, "raster", raster)
         self.x, self.y = locate_centers(raster.grid)
-        self.spacing = raster.grid.spacing
+        self.cell_size = raster.grid.cell_size
         if min(self.shape) < 2:
             raise PointsError(
                 f"A raster of {self.shape[0]:,} by {self.shape[1]:,} cells has no surface: two "

@@ -328,8 +328,8 @@ class _Meter:
             )
             return np.asarray(error[::-1])
         x, y = self.elevations.x[wide.columns], self.elevations.y[wide.rows]
-        spacing = self.elevations.spacing
-        values = self._drawn.values_at_centers(x, y, spacing, None, self.threads)
+        size = self.elevations.cell_size
+        values = self._drawn.values_at_centers(x, y, size, None, self.threads)
         return np.abs(np.asarray(values) - z)
 
 

@@ -56,6 +56,18 @@ def height(value: float) -> str:
     return f"{value:.3f}".rstrip("0").rstrip(".")
 
 
+def write_spacing(spacing: float | tuple[float, float]) -> str:
+    """Write the side of square cells, or both sides of others.
+
+    Examples
+    --------
+    >>> write_spacing(0.5), write_spacing((2.0, 3.0))
+    ('0.5', '2 by 3')
+    """
+    sides = spacing if isinstance(spacing, tuple) else (spacing,)
+    return " by ".join(f"{side:g}" for side in sides)
+
+
 def counted(number: int, noun: str, plural: str = "") -> str:
     """Return a number with its noun, for sentences.
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, NamedTuple, Protocol, TypeAlias, TypeVar
 
@@ -161,28 +162,178 @@ class Bounds:
         return (self.xmin + self.width / 2, self.ymin + self.height / 2)
 
 
-@dataclass(frozen=True, slots=True)
+class Affine(NamedTuple):
+    """A geotransform in the order of rasterio's ``Affine``.
+
+    Easting is ``a * column + b * row + c``, northing ``d * column + e * row + f``, where whole
+    numbers of columns and rows are the corners of cells.
+    """
+
+    a: float
+    b: float
+    c: float
+    d: float
+    e: float
+    f: float
+
+    def apply(self, column: Any, row: Any) -> tuple[Any, Any]:
+        """Return easting and northing of places counted in columns and rows."""
+        return (
+            column * self.a + row * self.b + self.c,
+            column * self.d + row * self.e + self.f,
+        )
+
+    def invert(self) -> Affine:
+        """Return the transform from easting and northing to columns and rows."""
+        a, b, c, d, e, f = self
+        area = a * e - b * d
+        return Affine(
+            *(e / area, -b / area, (b * f - c * e) / area),
+            *(-d / area, a / area, (c * d - a * f) / area),
+        )
+
+    def locate(self, x: Any, y: Any) -> tuple[Any, Any]:
+        """Return columns and rows of places, counted from the corner of the first cell."""
+        if self.b == 0.0 == self.d:
+            return (x - self.c) / self.a, (y - self.f) / self.e
+        east, north, area = x - self.c, y - self.f, self.a * self.e - self.b * self.d
+        return (
+            (self.e * east - self.b * north) / area,
+            (self.a * north - self.d * east) / area,
+        )
+
+
+_MOST_DRIFT = 1e-3
+"""Of a cell: so much the last cell may be off if cells are said to be square."""
+
+
+@dataclass(frozen=True, slots=True, repr=False)
 class Grid:
-    """A regular grid of cells; row 0 is the northernmost.
+    """A regular grid of cells; in the usual one, north up, row 0 is the northernmost.
 
     Attributes
     ----------
     bounds : Bounds
-        Outer edges of the outermost cells.
+        Outer edges of the outermost cells; of a rotated or sheared grid the box around them.
     shape : tuple of int
         (rows, columns).
-    spacing : float
-        Side of one square cell, CRS units.
+    spacing : float or (float, float)
+        Side of a square cell, CRS units; of other cells the lengths of their sides along a row and
+        along a column.
+    transform : Affine, optional
+        Six numbers a, b, c, d, e, f, as rasterio has them: easting is ``a * column + b * row + c``
+        and northing ``d * column + e * row + f``. Default north up, from bounds and spacing.
 
     Examples
     --------
     >>> Grid(Bounds(0.0, 0.0, 3.0, 4.0), shape=(8, 6), spacing=0.5).shape
     (8, 6)
+    >>> grid = Grid.of_transform((2.0, 0.0, 10.0, 0.0, 1.0, 20.0), shape=(3, 4))
+    >>> grid.bounds, grid.spacing, grid.is_north_up
+    (Bounds(xmin=10.0, ymin=20.0, xmax=18.0, ymax=23.0), (2.0, 1.0), False)
     """
 
     bounds: Bounds
     shape: tuple[int, int]
-    spacing: float
+    spacing: float | tuple[float, float]
+    transform: Affine = None  # type: ignore[assignment]  # set below
+
+    def __post_init__(self) -> None:
+        if self.transform is None:
+            object.__setattr__(self, "transform", self._find_usual_transform())
+        elif not isinstance(self.transform, Affine):
+            object.__setattr__(self, "transform", Affine(*map(float, self.transform)))
+
+    @classmethod
+    def of_transform(cls, transform: Sequence[float], shape: Sequence[int]) -> Grid:
+        """Return the grid of a raster, from its geotransform in the order of rasterio.
+
+        Parameters
+        ----------
+        transform : six numbers
+            a, b, c, d, e, f: cells may be rectangles, rotated or sheared, and rows may run from
+            south to north.
+        shape : (int, int)
+            Rows and columns.
+
+        Raises
+        ------
+        OptionError
+            If numbers are missing or not finite, or cells have no area.
+        """
+        affine, (rows, columns) = as_affine(transform), (int(side) for side in shape)
+        x, y = affine.apply(
+            np.array([0.0, columns, 0.0, columns]), np.array([0.0, 0.0, rows, rows])
+        )
+        if not (np.isfinite(x).all() and np.isfinite(y).all()):
+            raise OptionError("transform", tuple(transform), "one whose corners are finite")
+        bounds = Bounds(float(x.min()), float(y.min()), float(x.max()), float(y.max()))
+        return cls(bounds, (rows, columns), _find_spacing(affine, max(rows, columns)), affine)
+
+    @property
+    def cell_size(self) -> tuple[float, float]:
+        """Lengths of the sides of a cell along a row and along a column."""
+        return measure_sides(self.transform)
+
+    @property
+    def is_north_up(self) -> bool:
+        """Whether rows run to the east, and columns to the south."""
+        return self.is_aligned and self.transform.a > 0.0 > self.transform.e
+
+    @property
+    def is_aligned(self) -> bool:
+        """Whether the sides of cells run along the axes of the CRS, in either direction."""
+        return self.transform.b == 0.0 == self.transform.d
+
+    def _find_usual_transform(self) -> Affine:
+        size = self.spacing if isinstance(self.spacing, tuple) else (self.spacing, self.spacing)
+        try:
+            width, height = (float(side) for side in size)
+            west, north = float(self.bounds.xmin), float(self.bounds.ymax)
+        except (TypeError, ValueError, AttributeError):  # refused where the grid is used
+            return Affine(*[float("nan")] * 6)
+        return Affine(width, 0.0, west, 0.0, -height, north)
+
+    def __repr__(self) -> str:
+        usual = self.transform == self._find_usual_transform()
+        more = "" if usual else f", transform={tuple(self.transform)!r}"
+        return f"Grid(bounds={self.bounds!r}, shape={self.shape!r}, spacing={self.spacing!r}{more})"
+
+
+def as_affine(transform: Any) -> Affine:
+    """Return a geotransform whose cells have an area.
+
+    Raises OptionError for other things, numbers that are not finite, and a determinant of 0.
+    """
+    try:
+        numbers = [float(number) for number in tuple(transform)[:6]]
+    except (TypeError, ValueError, OverflowError):
+        numbers = []
+    if len(numbers) != 6 or not np.isfinite(numbers).all():
+        raise OptionError("transform", transform, "six finite numbers, as rasterio has them")
+    affine = Affine(*numbers)
+    width, height = measure_sides(affine)
+    area = abs(affine.a * affine.e - affine.b * affine.d)
+    if not (np.isfinite(area) and area > _LEAST_SINE * width * height > 0.0):
+        raise OptionError("transform", tuple(numbers), "one whose cells have an area")
+    return affine
+
+
+_LEAST_SINE = 2.0**-40
+"""Of the angle between the sides of a cell, below which rounding leaves no area."""
+
+
+def measure_sides(affine: Affine) -> tuple[float, float]:
+    """Return the lengths of the sides of a cell along a row and along a column."""
+    return math.hypot(affine.a, affine.d), math.hypot(affine.b, affine.e)
+
+
+def _find_spacing(affine: Affine, count: int) -> float | tuple[float, float]:
+    """Return the side of cells that are square within a grid of so many; else both sides."""
+    width, height = measure_sides(affine)
+    slant = abs(affine.a * affine.b + affine.d * affine.e) / width  # of the side of a column
+    is_square = max(abs(width - height), slant) * count <= _MOST_DRIFT * width
+    return width if is_square else (width, height)
 
 
 def seal(array: Array) -> Array:

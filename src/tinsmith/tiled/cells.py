@@ -12,7 +12,8 @@ from ..base.checks import as_length
 from ..base.crs import CRS
 from ..base.errors import OptionError
 from ..base.georeference import require_same_crs
-from ..base.types import Bounds, Grid
+from ..base.types import Affine, Bounds, Grid
+from ..io.raster import take_cells
 from ..terrain.gridding import add_cells, as_cells, cover, require_cells, require_overlap
 
 if TYPE_CHECKING:
@@ -34,7 +35,7 @@ def check_cells(spacing: float | None, like: Any, bounds: Bounds | None) -> dict
         raise OptionError("grid", [spacing, like], "one of spacing and like")
     if spacing is not None:
         as_length("spacing", spacing)
-    cells = None if like is None else as_cells(like)
+    cells = None if like is None else as_cells(take_cells(like))
     like_crs = None if cells is None else cells.crs
     if cells is not None:
         require_cells(cells.grid, in_memory=False)
@@ -61,7 +62,13 @@ def settle_cells(points: StoredPoints, options: Mapping[str, Any]) -> dict[str, 
 
 def make_grid(cells: Mapping[str, Any]) -> Grid:
     """Return a grid from plain values."""
-    return Grid(Bounds(**cells["bounds"]), tuple(cells["shape"]), cells["spacing"])
+    spacing = cells["spacing"]
+    return Grid(
+        Bounds(**cells["bounds"]),
+        tuple(cells["shape"]),
+        tuple(spacing) if isinstance(spacing, list) else spacing,
+        Affine(*cells["transform"]),
+    )
 
 
 def save_block(part: Part, rows: slice, columns: slice, values: AnyArray) -> dict[str, Any]:

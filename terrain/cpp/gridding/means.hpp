@@ -100,14 +100,16 @@ class MeanScan {
 
   void draw(Triangle t, std::uint32_t first) {
     Polygon whole;
-    double reach = 0.0;
+    double reach_x = 0.0, reach_y = 0.0;
     datum_ = value_at(t, first);
     for (std::uint32_t k = 0, corner = first; k < 3; ++k, corner = corner_after(corner)) {
       const Point p = surface_.corner(t, corner);
       whole.add({p.x - origin_.x, p.y - origin_.y, value_at(t, corner) - datum_});
-      reach = std::max({reach, std::fabs(p.x - origin_.x), std::fabs(p.y - origin_.y)});
+      reach_x = std::max(reach_x, std::fabs(p.x - origin_.x));
+      reach_y = std::max(reach_y, std::fabs(p.y - origin_.y));
     }
-    doubtful_ = kRounding * (reach + grid_.spacing * Tiles::kSide) * grid_.spacing;
+    doubtful_ = kRounding * std::max((reach_x + grid_.width * Tiles::kSide) * grid_.height,
+                                     (reach_y + grid_.height * Tiles::kSide) * grid_.width);
     const Box box = surface_.box_of(t);
     const Range rows = cells_between(grid_.row_at(box.north), grid_.row_at(box.south), tile_.rows);
     for (std::int32_t row = rows.begin; row < rows.end; ++row) {

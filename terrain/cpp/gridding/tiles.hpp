@@ -26,11 +26,11 @@ struct CellGrid {
   const double* y;
   std::int32_t columns;
   std::int32_t rows;
-  double spacing;
+  double width, height;  // of a cell
 
   // Places between centres, as real numbers; they are off by rounding.
-  double column_at(double easting) const { return (easting - x[0]) / spacing; }
-  double row_at(double northing) const { return (y[0] - northing) / spacing; }
+  double column_at(double easting) const { return (easting - x[0]) / width; }
+  double row_at(double northing) const { return (y[0] - northing) / height; }
   double* row_of(double* cells, std::int32_t row) const {
     return cells + static_cast<std::size_t>(row) * columns;
   }

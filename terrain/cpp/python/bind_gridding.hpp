@@ -3,6 +3,7 @@
 
 #include <nanobind/nanobind.h>
 #include <nanobind/stl/optional.h>
+#include <nanobind/stl/pair.h>
 #include <nanobind/stl/tuple.h>
 
 #include <cstdint>
@@ -23,9 +24,12 @@ using CellVectors = Made<double, -1, -1, 3>;
 // Cells, those whose centres lie on edges or vertices, and on which.
 using SharedCells = std::tuple<Cells, Offsets, Offsets>;
 
-inline CellGrid grid_of(const GivenValues& x, const GivenValues& y, double spacing) {
+using CellSize = std::pair<double, double>;  // width and height
+
+inline CellGrid grid_of(const GivenValues& x, const GivenValues& y, const CellSize& size) {
   if (x.shape(0) == 0 || y.shape(0) == 0) throw std::invalid_argument("a grid has cells");
-  return {x.data(), y.data(), row_count(x.shape(0)), row_count(y.shape(0)), spacing};
+  return {x.data(), y.data(), row_count(x.shape(0)), row_count(y.shape(0)), size.first,
+          size.second};
 }
 
 template <typename Draw>
@@ -43,10 +47,10 @@ class GriddedSurface {
   GriddedSurface(const GivenXyz& points, const GivenTriples& triangles)
       : ordered_(order(surface_of(points, triangles))) {}
 
-  Cells values_at_centers(const GivenValues& x, const GivenValues& y, double spacing,
+  Cells values_at_centers(const GivenValues& x, const GivenValues& y, const CellSize& size,
                           const std::optional<GivenValues>& values, int threads,
                           const Listener::Tell& tell) const {
-    const CellGrid grid = grid_of(x, y, spacing);
+    const CellGrid grid = grid_of(x, y, size);
     const double* each = values_of(values);
     return draw_cells(grid, threads, tell, [&](double* cells, Team& team) {
       if (each == nullptr) {
@@ -57,10 +61,10 @@ class GriddedSurface {
     });
   }
 
-  SharedCells triangles_at_centers(const GivenValues& x, const GivenValues& y, double spacing,
+  SharedCells triangles_at_centers(const GivenValues& x, const GivenValues& y, const CellSize& size,
                                    const GivenValues& values, int threads,
                                    const Listener::Tell& tell) const {
-    const CellGrid grid = grid_of(x, y, spacing);
+    const CellGrid grid = grid_of(x, y, size);
     const double* each = values_of(values);
     std::vector<SharedCenter> shared;
     Cells drawn = draw_cells(grid, threads, tell, [&](double* cells, Team& team) {
@@ -75,10 +79,10 @@ class GriddedSurface {
             copy_over<Offsets, std::int64_t>(parts, {parts.size()})};
   }
 
-  CellVectors vectors_at_centers(const GivenValues& x, const GivenValues& y, double spacing,
+  CellVectors vectors_at_centers(const GivenValues& x, const GivenValues& y, const CellSize& size,
                                  const GivenXyz& vectors, int threads,
                                  const Listener::Tell& tell) const {
-    const CellGrid grid = grid_of(x, y, spacing);
+    const CellGrid grid = grid_of(x, y, size);
     if (vectors.shape(0) != static_cast<std::size_t>(ordered_.surface().point_count)) {
       throw std::invalid_argument("there must be one vector for each vertex");
     }
@@ -92,11 +96,11 @@ class GriddedSurface {
     return hand_over<CellVectors>(std::move(cells), {rows, columns, 3});
   }
 
-  Cells means_of_cells(const GivenValues& x, const GivenValues& y, double spacing,
+  Cells means_of_cells(const GivenValues& x, const GivenValues& y, const CellSize& size,
                        const GivenValues& x_edges, const GivenValues& y_edges,
                        const std::optional<GivenValues>& values, int threads,
                        const Listener::Tell& tell) const {
-    const CellGrid grid = grid_of(x, y, spacing);
+    const CellGrid grid = grid_of(x, y, size);
     if (x_edges.shape(0) != x.shape(0) + 1 || y_edges.shape(0) != y.shape(0) + 1) {
       throw std::invalid_argument("columns and rows have one edge more than centres");
     }
@@ -135,19 +139,19 @@ inline void bind_gridding(nb::module_& m) {
       .def(nb::init<const GivenXyz&, const GivenTriples&>(), "points"_a.noconvert(),
            "triangles"_a.noconvert())
       .def("values_at_centers", &GriddedSurface::values_at_centers, "x"_a.noconvert(),
-           "y"_a.noconvert(), "spacing"_a, "values"_a.none(), "threads"_a = 1,
+           "y"_a.noconvert(), "size"_a, "values"_a.none(), "threads"_a = 1,
            "progress"_a = nb::none(),
            "Elevations, or values of triangles, at the centres of cells; NaN outside.")
       .def("triangles_at_centers", &GriddedSurface::triangles_at_centers, "x"_a.noconvert(),
-           "y"_a.noconvert(), "spacing"_a, "values"_a.noconvert(), "threads"_a = 1,
+           "y"_a.noconvert(), "size"_a, "values"_a.noconvert(), "threads"_a = 1,
            "progress"_a = nb::none(),
            "Values of triangles at centres; the cells whose centres lie on edges and vertices.")
       .def("vectors_at_centers", &GriddedSurface::vectors_at_centers, "x"_a.noconvert(),
-           "y"_a.noconvert(), "spacing"_a, "vectors"_a.noconvert(), "threads"_a = 1,
+           "y"_a.noconvert(), "size"_a, "vectors"_a.noconvert(), "threads"_a = 1,
            "progress"_a = nb::none(),
            "Vectors of vertices, which change evenly between them, at centres; NaN outside.")
       .def("means_of_cells", &GriddedSurface::means_of_cells, "x"_a.noconvert(), "y"_a.noconvert(),
-           "spacing"_a, "x_edges"_a.noconvert(), "y_edges"_a.noconvert(), "values"_a.none(),
+           "size"_a, "x_edges"_a.noconvert(), "y_edges"_a.noconvert(), "values"_a.none(),
            "threads"_a = 1, "progress"_a = nb::none(),
            "Means over the parts of cells that the surface covers; NaN where it covers none.");
 }

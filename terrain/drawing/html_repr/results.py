@@ -10,8 +10,8 @@ import numpy as np
 
 from ....base.georeference import find_axes
 from ....base.results import unit_text
-from ....base.sentences import counted
-from ..north_up import draw_north_up
+from ....base.sentences import counted, write_spacing
+from ..north_up import draw_north_up, turn_rows
 from .drawings import Canvas, draw_cells
 from .frame import (
     SIZE,
@@ -91,12 +91,13 @@ def make_raster_html(raster: Raster) -> str:
     name, band = next(iter(raster.bands.items()))
     sample = None
     if isinstance(band, np.ndarray):
-        turned = draw_north_up(replace(raster, bands={name: band}, units={}))
+        turned = turn_rows(draw_north_up(replace(raster, bands={name: band}, units={})))
         sample = _sample(turned.bands[name], raster.nodata)
     title = f"Raster: {raster.name}" if raster.name else "Raster"
     picture = None if sample is None else draw_cells(sample)
     rows = _describe_raster(raster, name)
-    return write_html(title, rows, picture=picture, alt=f"Picture of {name}, north up")
+    way = "north up" if raster.grid.is_aligned else "rows and columns as they are stored"
+    return write_html(title, rows, picture=picture, alt=f"Picture of {name}, {way}")
 
 
 def _sample(band: AnyArray, nodata: float) -> Float64Array:
@@ -108,7 +109,7 @@ def _sample(band: AnyArray, nodata: float) -> Float64Array:
 
 def _describe_raster(raster: Raster, shown: str) -> Iterator[tuple[str, str]]:
     rows, columns = raster.shape
-    spacing = f"{raster.grid.spacing:g}"
+    spacing = write_spacing(raster.grid.spacing)
     yield "Cells", f"{counted(rows, 'row')} by {counted(columns, 'column')} of {spacing}"
     yield "Bands", _name_columns(raster.bands, raster.units)
     band = raster.bands[shown]

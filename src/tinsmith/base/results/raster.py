@@ -13,14 +13,14 @@ from ..crs import CRS, shorten_crs
 from ..errors import OptionError
 from ..notes import as_notes
 from ..ranges import require_degrees
-from ..sentences import counted
+from ..sentences import counted, write_spacing
 from ..types import Grid
 from .columns import FrozenMapping, Noted, as_name, as_units, frozen_copy, named_items
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from ..arrays import AnyArray
+    from ..arrays import AnyArray, Float64Array
     from .columns import Units
 
 _FEWEST_ULPS = 8.0
@@ -29,14 +29,15 @@ _FEWEST_ULPS = 8.0
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Raster(Noted):
-    """Values in the square cells of a grid, in one or several bands.
+    """Values in the cells of a grid, in one or several bands.
 
     Attributes
     ----------
     bands : mapping of str to (rows, columns) array
-        By name; row 0 is the northernmost. Numbers or truth values. Instead of an array, anything
-        with ``shape``, ``dtype`` and ``band[rows, columns]`` (slices) that returns an array: its
-        blocks are asked for as they are written, so that a raster may be larger than memory.
+        By name; row 0 is the northernmost where the grid is north up. Numbers or truth values.
+        Instead of an array, anything with ``shape``, ``dtype`` and ``band[rows, columns]`` (slices)
+        that returns an array: its blocks are asked for as they are written, so that a raster may be
+        larger than memory.
     grid : Grid
     crs : CRS or None
         Given as a code ("EPSG:32616"), number, WKT or ``pyproj.CRS``.
@@ -81,11 +82,7 @@ class Raster(Noted):
         bands = {name: _as_band(name, values, shape) for name, values in items.items()}
         keep(self, "bands", FrozenMapping(bands))
         crs = CRS.of(self.crs)
-        # Of the first and the last cell of the last and the first row the centres.
-        box, (rows, columns) = self.grid.bounds, self.grid.shape
-        across, up = box.width / columns / 2, box.height / rows / 2
-        low, high = (box.xmin + across, box.ymin + up), (box.xmax - across, box.ymax - up)
-        require_degrees(np.array([low, high]), crs, "Corners")
+        require_degrees(_list_corners(self.grid), crs, "Corners")
         keep(self, "crs", crs)
         nodata: Any = self.nodata
         is_number = isinstance(nodata, int | float | np.number) and not isinstance(nodata, bool)
@@ -108,9 +105,10 @@ class Raster(Noted):
         Returns
         -------
         xarray.Dataset
-            Dimensions ``y`` and ``x``, coordinates of the cell centres, northings falling. The CRS
-            is in the coordinate ``spatial_ref``, as CF and rioxarray have it; each variable has
-            ``units`` if they are known, and ``_FillValue``.
+            Dimensions ``y`` and ``x``, coordinates of the cell centres, northings falling if the
+            grid is north up; of a rotated grid ``xc`` and ``yc``, one for each cell, as rioxarray
+            has them. The CRS and the geotransform are in the coordinate ``spatial_ref``, as CF and
+            rioxarray have it; each variable has ``units`` if they are known, and ``_FillValue``.
 
         Raises
         ------
@@ -134,7 +132,7 @@ class Raster(Noted):
         title = f" {self.name}" if self.name else ""
         return (
             f"<Raster{title}: {counted(rows, 'row')} by {counted(columns, 'column')}, "
-            f"spacing {self.grid.spacing:g}, bands {', '.join(self.bands)}, "
+            f"spacing {write_spacing(self.grid.spacing)}, bands {', '.join(self.bands)}, "
             f"crs {shorten_crs(self.crs)}>"
         )
 
@@ -160,11 +158,49 @@ def require_grid(grid: Any) -> None:
     rows, columns = grid.shape
     if rows < 1 or columns < 1:
         raise OptionError("shape of the grid", grid.shape, allowed="1 or more rows and columns")
-    as_length("spacing of the grid", grid.spacing)
-    bounds = grid.bounds
-    sides = ((bounds.xmin, bounds.xmax, columns), (bounds.ymin, bounds.ymax, rows))
-    for low, high, cells in sides:
-        rounding = _FEWEST_ULPS * math.ulp(max(abs(low), abs(high), cells * grid.spacing))
-        if not abs(high - low - cells * grid.spacing) <= rounding:
-            allowed = f"{cells} cells of {grid.spacing!r} apart"
+    sides = grid.spacing if isinstance(grid.spacing, tuple) else (grid.spacing,)
+    if len(sides) not in (1, 2):
+        raise OptionError("spacing of the grid", grid.spacing, allowed="one or two lengths")
+    for side in sides:
+        as_length("spacing of the grid", side)
+    if grid.transform != Grid(grid.bounds, grid.shape, grid.spacing).transform:
+        _require_transform(grid)
+        return
+    bounds, (width, height) = grid.bounds, (sides[0], sides[-1])
+    axes = (
+        (bounds.xmin, bounds.xmax, columns, width),
+        (bounds.ymin, bounds.ymax, rows, height),
+    )
+    for low, high, cells, side in axes:
+        rounding = _FEWEST_ULPS * math.ulp(max(abs(low), abs(high), cells * side))
+        if not abs(high - low - cells * side) <= rounding:
+            allowed = f"{cells} cells of {side!r} apart"
             raise OptionError("bounds of the grid", (low, high), allowed=allowed)
+
+
+def _require_transform(grid: Grid) -> None:
+    """Refuse bounds and spacing that are not those of the geotransform."""
+    wanted = Grid.of_transform(grid.transform, grid.shape)
+    of_bounds = [[one.xmin, one.ymin, one.xmax, one.ymax] for one in (grid.bounds, wanted.bounds)]
+    rounding = _FEWEST_ULPS * float(np.spacing(np.abs(of_bounds[1]).max()))
+    if not np.abs(np.subtract(*of_bounds)).max() <= rounding:
+        raise OptionError("bounds of the grid", grid.bounds, f"those of its cells, {wanted.bounds}")
+    if np.ravel(grid.spacing).tolist() != np.ravel(wanted.spacing).tolist():
+        allowed = f"that of its cells, {wanted.spacing!r}"
+        raise OptionError("spacing of the grid", grid.spacing, allowed)
+
+
+def require_square(grid: Grid, name: str, value: Any) -> None:
+    """Refuse, by an OptionError, cells that are not square, or rows that are not from north up."""
+    if not grid.is_north_up or isinstance(grid.spacing, tuple):
+        a, b, _, d, e, _ = grid.transform
+        turned = "" if b == 0.0 == d else f", with {b:g} and {d:g} of rotation"
+        allowed = f"a north-up raster of square cells (these are {a:g} by {-e:g}{turned})"
+        raise OptionError(name, value, allowed)
+
+
+def _list_corners(grid: Grid) -> Float64Array:
+    """Return the centres of the four cells at the corners."""
+    rows, columns = grid.shape
+    across, down = np.meshgrid([0.5, columns - 0.5], [0.5, rows - 0.5])
+    return np.column_stack(grid.transform.apply(across.ravel(), down.ravel()))

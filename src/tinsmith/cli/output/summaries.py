@@ -9,7 +9,7 @@ import numpy as np
 
 from ...base.crs import assume_elevation_unit
 from ...base.georeference import find_axes
-from ...base.sentences import counted
+from ...base.sentences import counted, write_spacing
 from ...io.reprojection import is_geographic, length_unit
 from ...terrain import slope
 from ...terrain.surface import measure_areas
@@ -64,7 +64,8 @@ def describe_tin(tin: TIN) -> dict[str, Any]:
 def describe_raster_size(raster: Raster) -> str:
     """Return rows, columns and spacing for a summary."""
     rows, columns = raster.shape
-    return f"{counted(rows, 'row')} by {counted(columns, 'column')} of {raster.grid.spacing:g}"
+    spacing = write_spacing(raster.grid.spacing)
+    return f"{counted(rows, 'row')} by {counted(columns, 'column')} of {spacing}"
 
 
 def measure_quality(tin: TIN) -> Quality | None:

@@ -13,6 +13,7 @@ from ...base.errors import OptionError, PointsError, choice
 from ...base.georeference import describe_unknown
 from ...base.policies import GridOperator, RasterSample, RasterValue
 from ...base.results import Raster
+from ...base.sentences import write_spacing
 from ...terrain.gridding import (
     DESCRIBED_MEANS,
     GridMeasure,
@@ -21,6 +22,7 @@ from ...terrain.gridding import (
     describe_smooth,
     list_units,
     make_measure,
+    require_aligned,
     require_sample,
 )
 from ...terrain.parts import (
@@ -69,6 +71,8 @@ def check_options(
     choice("at", at, RasterSample)
     of_cells = make_measure(value, operator, compute_edges, light=as_light(azimuth, altitude))
     require_sample(method, value, at, smooth, of_cells)
+    if cells["like"]:
+        require_aligned(of_cells, make_grid(cells["like"]))
     if smooth is not None:
         as_flag("smooth", smooth)
     if smooth and at == "mean":
@@ -123,17 +127,19 @@ def _make_options(options: Mapping[str, Any]) -> RasterOptions:
 def compute(part: Part) -> tuple[int, dict[str, Any], list[str]]:
     """Compute the cells of a tile."""
     options = _make_options(part.job.options)
-    rows, columns = find_cells(options.grid, part.job.tile.box)
+    box = part.job.tile.box
+    rows, columns = find_cells(options.grid, box)
     if rows.start == rows.stop:
         return 0, {}, []
-    reach, rings = find_reach(options, rows, columns), count_rings(options)
+    reach, rings = find_reach(options, rows, columns, box), count_rings(options)
     local = part.triangulate(reach, rings=rings, ordered=False)
     if not len(local.triangles):
         return 0, {}, []
-    values = compute_block(local, rows, columns, options).values
+    values = compute_block(local, rows, columns, options, box).values
     found = save_block(part, rows, columns, values)
     if not np.isfinite(values).any() and options.value == "aspect":  # of a level surface
-        values = compute_block(local, rows, columns, options._replace(value="slope")).values
+        slopes = options._replace(value="slope")
+        values = compute_block(local, rows, columns, slopes, box).values
     found["covered"] = int(np.isfinite(values).sum())
     return len(local.points), found, [name_block(part)]
 
@@ -155,7 +161,7 @@ def join(
         if of_cells is not None:
             raise PointsError(describe_no_value(of_cells, grid))
         raise PointsError(
-            f"No {what} lies on the surface: the cells are {grid.spacing:g} wide and "
+            f"No {what} lies on the surface: the cells are {write_spacing(grid.spacing)} wide and "
             f"cover {describe_extent(grid.bounds)}, the points {describe_extent(points.bounds)}."
         )
     blocks: Any = Blocks(folder, records, grid, math.nan)
