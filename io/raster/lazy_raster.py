@@ -48,8 +48,7 @@ def read_raster(
     Parameters
     ----------
     path : str or os.PathLike
-        A local file that GDAL reads, north up, with square cells. It must stay as it is while the
-        raster is used.
+        A local file that GDAL reads. It must stay as it is while the raster is used.
     crs : CRS, str, int or pyproj.CRS, optional
         Declares the CRS of a raster that has none. Nothing is transformed.
     elevation_unit : Unit or str, optional
@@ -70,8 +69,8 @@ def read_raster(
         If GDAL cannot read the file, it is a pipe or a picture, it has no georeference, or its CRS
         is in degrees.
     OptionError
-        If its cells are turned or not square, ``crs`` is another than that of the file, or an
-        option is not one that it has.
+        If its cells have no area, ``crs`` is another than that of the file, or an option is not one
+        that it has.
     MissingExtraError
         If rasterio is not installed.
 

@@ -317,6 +317,47 @@ def test_cells_of_another_raster_are_in_the_same_crs(lidar, wanted, tmp_path):
         cloud.rasterize(tmp_path / "b.tif", like=other, executor=Shuffled())
 
 
+@pytest.mark.parametrize(
+    "transform",
+    [
+        (7.0, 0.0, 500_020.0, 0.0, 3.0, 4_000_010.0),
+        (-7.0, 0.0, 500_220.0, 0.0, -3.0, 4_000_190.0),
+        (4.0, 3.0, 500_030.0, 3.0, -4.0, 4_000_080.0),
+        (4.0, 1.0, 500_030.0, 2.0, 5.0, 4_000_020.0),
+    ],
+)
+@pytest.mark.parametrize(
+    "how",
+    [
+        {},
+        {"at": "mean"},
+        {"value": "slope"},
+        {"value": "hillshade", "smooth": True},
+        {"value": "roughness"},
+        {"value": "tri", "compute_edges": True},
+    ],
+)
+def test_cells_of_any_geotransform(lidar, tmp_path, transform, how):
+    tin = ts.triangulate(ts.read(lidar, classes=2))
+    grid = ts.Grid.of_transform(transform, (37, 28))
+    like = ts.Raster({"a": np.zeros((37, 28))}, grid, crs="EPSG:32616")
+    wanted = ts.rasterize(tin, like=like, **how)
+    file = ts.write(like, tmp_path / "like.tif")
+    cloud = ts.tiles(lidar, classes=2)
+    path = cloud.rasterize(tmp_path / "a.tif", like=file, tiles=7, executor=Shuffled(), **how)
+    np.testing.assert_array_equal(read(path), next(iter(wanted.bands.values())))
+    with rasterio.open(path) as made:
+        assert tuple(made.transform)[:6] == transform
+    counts = cloud.rasterize_counts(tmp_path / "c.tif", like=file, tiles=7, executor=Shuffled())
+    survey = ts.read(lidar, classes=2)
+    np.testing.assert_array_equal(
+        read(counts), ts.rasterize_counts(survey, like=like).bands["count"]
+    )
+    if "value" in how and transform[1] and "smooth" not in how:
+        with pytest.raises(ts.OptionError, match="rotated or sheared"):
+            cloud.rasterize(tmp_path / "b.tif", like=file, value="slope", operator="horn")
+
+
 def test_too_many_cells_are_refused_before_anything_is_read(lidar, tmp_path):
     fine = {"spacing": 1e-5}
     for cloud in (ts.tiles(lidar), ts.tiles(lidar, classes=2)):

@@ -92,6 +92,8 @@ def as_places(xy: Any) -> tuple[Float64Array, bool]:
         is_one = isinstance(xy, list | tuple) and len(xy) == 2 and not np.ndim(xy[0])
     else:
         is_one = tuple(shape) == (2,)
+    if is_one:  # two points of shapely are no coordinates of one
+        is_one = not any(hasattr(one, "__geo_interface__") for one in xy)
     return as_xy([xy] if is_one else xy), is_one
 
 

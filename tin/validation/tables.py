@@ -23,7 +23,7 @@ COORDINATES = ("easting", "northing", "elevation")
 _NAMES = {
     "easting": ("x", "e", "east", "easting", "eastings", "lon", "long", "lng", "longitude"),
     "northing": ("y", "n", "north", "northing", "northings", "lat", "latitude"),
-    "elevation": ("z", "elevation", "elev", "height", "h", "altitude", "alt"),
+    "elevation": ("z", "elevation", "elev", "ele", "height", "h", "altitude", "alt"),
 }
 _ROLE_OF = {name: role for role, names in _NAMES.items() for name in names}
 _SHOWN = 8

@@ -260,6 +260,12 @@ class Grid:
         ------
         OptionError
             If numbers are missing or not finite, or cells have no area.
+
+        Examples
+        --------
+        >>> turned = Grid.of_transform((0.6, 0.8, 10.0, 0.8, -0.6, 20.0), shape=(3, 4))
+        >>> turned.spacing, turned.is_north_up
+        (1.0, False)
         """
         affine, (rows, columns) = as_affine(transform), (int(side) for side in shape)
         x, y = affine.apply(

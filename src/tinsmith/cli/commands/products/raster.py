@@ -28,7 +28,7 @@ _RASTERIZE = "terrain.gridding.rasters.rasterize"
 
 @file_command
 @product_options(_RASTERIZE, "spacing")
-@file_option("--like", "Raster whose cells are used.")
+@file_option("--like", "Raster whose cells are used, of any geotransform.")
 @choice_option(
     "--value",
     CellValue,
