@@ -16,6 +16,7 @@ from ...base.sentences import FILE, height
 if TYPE_CHECKING:
     from ...base.arrays import AnyArray, BoolArray
     from ...base.results import Raster
+    from ...base.types import CellStorage
 
 
 def require_north_up(raster: Raster, what: str) -> None:
@@ -36,9 +37,10 @@ def store_as(raster: Raster, dtype: CellType | None, nodata: float | None) -> Ra
     ----------
     raster : Raster
     dtype : str or None
-        None keeps that of the bands.
+        None keeps that of ``raster.stored_as``, or else of the bands.
     nodata : float or None
-        None keeps that of the raster, which is NaN if nothing else was chosen.
+        None keeps that of ``raster.stored_as``, or else of the raster, which is NaN if nothing else
+        was chosen.
 
     Returns
     -------
@@ -52,17 +54,39 @@ def store_as(raster: Raster, dtype: CellType | None, nodata: float | None) -> Ra
     OptionError
         If the type is unknown, or cannot hold the value of cells without data.
     """
-    if dtype is None and nodata is None:
-        return raster
     if dtype is not None:
         choice("dtype", dtype, CellType)
+    kept: str | None = dtype
+    if raster.stored_as is not None:
+        kept, nodata = _find_usual(raster.stored_as, dtype, nodata)
+    if kept is None and nodata is None:
+        return raster
     chosen = raster.nodata if nodata is None else _as_nodata(nodata)
     bands: dict[str, Any] = {}
     for name, band in raster.bands.items():
-        kind = np.dtype(band.dtype if dtype is None else dtype)
+        kind = np.dtype(band.dtype if kept is None else kept)
         _require_nodata(chosen, kind, raster, band)
         bands[name] = _StoredBand(name, band, kind, raster.nodata, chosen)
     return replace(raster, bands=bands, nodata=chosen)
+
+
+def _find_usual(
+    usual: CellStorage, dtype: str | None, nodata: float | None
+) -> tuple[str, float | None]:
+    """Return the type and the value without data that were asked for, or else the usual ones.
+
+    That value is rounded as cells are; it is left out if the type that was asked for has none.
+    """
+    kind = np.dtype(usual.dtype if dtype is None else dtype)
+    if nodata is not None or usual.nodata is None:
+        return kind.name, nodata
+    if kind.kind == "f":
+        with np.errstate(over="ignore"):
+            rounded = float(np.float64(usual.nodata).astype(kind))
+        return kind.name, rounded if math.isfinite(rounded) else None
+    low, high = _find_limits(kind)
+    fits = low <= usual.nodata <= high and usual.nodata == int(usual.nodata)
+    return kind.name, usual.nodata if fits else None
 
 
 def _as_nodata(nodata: Any) -> float:

@@ -54,6 +54,7 @@ def describe(dataset: Any) -> dict[str, Any]:
         "block_width": int(dataset.block_shapes[0][1]) if dataset.count else 1,
         "scales": list(dataset.scales),
         "offsets": list(dataset.offsets),
+        "nodata": list(dataset.nodatavals),
         "units": [unit or None for unit in dataset.units],
         "crs": dataset.crs.to_wkt() if dataset.crs else None,
         "meanings": [_list_words(dataset, band) for band in range(1, dataset.count + 1)[:_SAID]],

@@ -59,10 +59,11 @@ def write(
     compression : {"deflate", "none"}, optional
         Without loss, as every GIS reads it, by all cores; or none, for the fastest file.
     dtype : {"float32", "float64", "int8", "int16", "int32", "uint8", "uint16", "uint32"}, optional
-        Type of the cells; whole numbers are rounded to the nearest. Default that of the raster.
+        Type of the cells; whole numbers are rounded to the nearest. Default that of the raster, or
+        of the raster file from which it was read or whose floating cells it has (``like``).
     nodata : float, optional
-        Value of cells without data, which no other cell may have. Default that of the raster, NaN
-        if nothing else was chosen.
+        Value of cells without data, which no other cell may have. Default as of ``dtype``; NaN if
+        nothing else was chosen.
 
     Raises
     ------
@@ -122,10 +123,11 @@ def write_cog(
     overviews : {"average", "nearest", "none"}, optional
         How the cells of smaller copies for display are found, as :func:`write` chooses it.
     dtype : {"float32", "float64", "int8", "int16", "int32", "uint8", "uint16", "uint32"}, optional
-        Type of the cells; whole numbers are rounded to the nearest. Default that of the raster.
+        Type of the cells; whole numbers are rounded to the nearest. Default that of the raster, or
+        of the raster file from which it was read or whose floating cells it has (``like``).
     nodata : float, optional
-        Value of cells without data, which no other cell may have. Default that of the raster, NaN
-        if nothing else was chosen.
+        Value of cells without data, which no other cell may have. Default as of ``dtype``; NaN if
+        nothing else was chosen.
 
     Notes
     -----

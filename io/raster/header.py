@@ -37,6 +37,8 @@ class Header:
     block_width: int
     scales: list[float]
     offsets: list[float]
+    nodata: list[float | None]
+    """Values of cells without data that it declares, of each band."""
     units: list[str | None]
     crs: str | None
     meanings: list[dict[str, str]]

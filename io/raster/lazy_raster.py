@@ -12,6 +12,7 @@ from ...base.crs import CRS, Unit
 from ...base.errors import OptionError, ReadError
 from ...base.results import Raster
 from ...base.sentences import FILE
+from ...base.types import CellStorage
 from ...terrain.gridding import as_parts, to_grid
 from ...tin.screening import parse_nodata
 from ..door import names_its_file
@@ -115,10 +116,14 @@ def _make_raster(
         raise OptionError("crs", target, f"that of {FILE}, {source}: cells are not transformed")
     placed = place(find_middle(header), source=source, target=target, unit=unit)
     bands: dict[str, Any] = {"elevation": _FileBand(header, number, marks)}
+    stored = CellStorage(header.dtypes[number - 1], header.nodata[number - 1])
+    is_kept = (header.scales[number - 1], header.offsets[number - 1]) == (1.0, 0.0)
+    has_nodata = np.dtype(stored.dtype).kind == "f" or stored.nodata is not None
     return Raster(
         bands,
         grid,
         crs=placed.crs,
+        stored_as=stored if is_kept and has_nodata else None,
         units={"elevation": placed.elevation_unit},
         name=path.stem,
         notes=[*said, *noted, *notes, *placed.notes],

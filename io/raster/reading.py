@@ -17,7 +17,7 @@ from ...base.crs import CRS, Unit
 from ...base.errors import OptionError, ReadError
 from ...base.progress import Progress
 from ...base.sentences import FILE, coordinate, counted
-from ...base.types import Affine
+from ...base.types import Affine, CellStorage
 from ...terrain.surface import trace_rings
 from ...tin import Bounds, Survey
 from ...tin.screening import ElevationSummary, parse_nodata
@@ -311,8 +311,8 @@ def _describe_no_surface() -> ReadError:
 @names_its_file
 def read_georeference(
     path: Path,
-) -> tuple[tuple[float, ...], tuple[int, int], str | None]:
-    """Return where the cells of a raster lie, read in a child from its header.
+) -> tuple[tuple[float, ...], tuple[int, int], str | None, CellStorage]:
+    """Return where the cells of a raster lie and how they are kept, read in a child.
 
     Returns
     -------
@@ -321,6 +321,8 @@ def read_georeference(
     shape : (2,) tuple of int
         Rows and columns.
     crs : str or None
+    stored_as : CellStorage
+        Of the first band.
 
     Raises
     ------
@@ -331,7 +333,8 @@ def read_georeference(
     """
     dataset = read_header(path)
     _require_position(dataset)
-    return tuple(dataset.transform), (dataset.height, dataset.width), dataset.crs
+    stored = CellStorage(dataset.dtypes[0], dataset.nodata[0])
+    return tuple(dataset.transform), (dataset.height, dataset.width), dataset.crs, stored
 
 
 def _add_void_rings(survey: Survey, valid: BoolArray) -> Survey:

@@ -63,8 +63,8 @@ def read_cells(path: str | os.PathLike[str] | IO[bytes]) -> Cells:
 
 
 def _read_local(path: Path, name: str) -> Cells:
-    transform, shape, crs = read_georeference(path)
-    return Cells(to_grid(transform, shape, name), CRS.of(crs))
+    transform, shape, crs, stored_as = read_georeference(path)
+    return Cells(to_grid(transform, shape, name), CRS.of(crs), stored_as)
 
 
 def take_cells(like: Any) -> Any:

@@ -11,6 +11,7 @@ from .grids import describe_extent as describe_extent
 from .grids import locate_edges as locate_edges
 from .grids import require_cells as require_cells
 from .grids import require_overlap as require_overlap
+from .grids import settle_storage as settle_storage
 from .grids import to_grid as to_grid
 from .ground_heights import height_above as height_above
 from .hillshades import hillshade as hillshade

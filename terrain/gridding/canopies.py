@@ -13,7 +13,7 @@ from ...base.results import Raster
 from ...base.sentences import counted
 from ...tin import Survey
 from .bands import SurfaceBand
-from .grids import as_grid, describe_extent
+from .grids import as_grid, describe_extent, settle_storage
 from .ground_heights import place_points
 from .point_cells import find_highest, locate_cells
 from .point_rasters import fill_cells, list_notes
@@ -98,17 +98,20 @@ def rasterize_canopy(
             "No cell has both a point and ground: the cells cover "
             f"{describe_extent(cells.bounds)}, and the ground {describe_extent(tin.bounds)}."
         )
+    stored_as, told = settle_storage(like)
     outside = int(np.count_nonzero(locate_cells(cells, points)[0] < 0))
     return Raster(
         {"dsm": surface, "dtm": terrain, "chm": height},
         cells,
         crs=tin.crs,
+        stored_as=stored_as,
         units=dict.fromkeys(("dsm", "dtm", "chm"), tin.elevation_unit),
         name="canopy",
         notes=[
             *(f"The points above: {note}" for note in list_notes(cloud)),
             *noted,
             *notes,
+            *told,
             *_describe_noise(cloud),
             *_describe_outside(outside, len(points)),
             *_describe_cells(~np.isnan(surface), ~np.isnan(terrain)),

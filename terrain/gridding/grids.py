@@ -13,7 +13,7 @@ from ...base.errors import OptionError, PointsError
 from ...base.georeference import require_same_crs
 from ...base.results import Raster, require_grid
 from ...base.sentences import coordinate, counted
-from ...base.types import Affine, Bounds, Grid
+from ...base.types import Affine, Bounds, CellStorage, Grid
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -41,6 +41,7 @@ class Cells(NamedTuple):
 
     grid: Grid
     crs: CRS | None
+    stored_as: CellStorage | None = None
 
 
 def as_grid(
@@ -69,7 +70,7 @@ def as_grid(
     if spacing is not None:
         found = cover(tin.bounds, spacing)
     elif like is not None:
-        found, crs = as_cells(like)
+        found, crs, _ = as_cells(like)
         notes = require_same_crs(crs, tin.crs, "the other raster")
     else:
         found = as_one_grid(grid)
@@ -170,10 +171,11 @@ def as_cells(like: Any) -> Cells:
     if isinstance(like, Cells):
         return like
     if isinstance(like, Raster):
-        return Cells(like.grid, like.crs)
+        return Cells(like.grid, like.crs, like.stored_as or _find_storage(like))
     if all(hasattr(like, name) for name in ("transform", "shape", "crs")):
-        affine, crs = like.transform, like.crs
-        return Cells(to_grid(tuple(affine)[:6], like.shape), CRS.of(crs.to_wkt()) if crs else None)
+        grid, crs = to_grid(tuple(like.transform)[:6], like.shape), like.crs
+        stored = CellStorage(like.dtypes[0], like.nodata) if hasattr(like, "dtypes") else None
+        return Cells(grid, CRS.of(crs.to_wkt()) if crs else None, stored)
     if all(hasattr(like, name) for name in ("coords", "dims")):
         return _take_coordinates(like)
     raise OptionError(
@@ -205,7 +207,7 @@ def _take_coordinates(like: Any) -> Cells:
     written = _read_transform(named)
     if written is not None and {"y", "x"} <= set(like.dims) and "x" not in like.coords:
         shape = like.sizes["y"], like.sizes["x"]
-        return Cells(to_grid(written, shape, like), crs)
+        return Cells(to_grid(written, shape, like), crs, _find_array_storage(like))
     names = [name for name in ("x", "y") if name in like.coords]
     sides = [np.asarray(like.coords[name].values, np.float64) for name in names]
     if len(names) != 2 or any(side.ndim != 1 or len(side) < 2 for side in sides):
@@ -220,7 +222,53 @@ def _take_coordinates(like: Any) -> Cells:
     found = Affine(across, 0.0, float(x[0]) - across / 2, 0.0, up, float(y[0]) - up / 2)
     if written is not None and _is_about(written, found, max(len(x), len(y))):
         found = written
-    return Cells(to_grid(found, (len(y), len(x)), like), crs)
+    return Cells(to_grid(found, (len(y), len(x)), like), crs, _find_array_storage(like))
+
+
+def _find_storage(raster: Raster) -> CellStorage | None:
+    """Return how the cells of a raster are kept, if all bands are of one type."""
+    kinds = {np.dtype(band.dtype).name for band in raster.bands.values()}
+    return CellStorage(kinds.pop(), raster.nodata) if len(kinds) == 1 else None
+
+
+def _find_array_storage(like: Any) -> CellStorage | None:
+    """Return how the cells of an object of xarray are kept, if all variables are of one type."""
+    arrays = list(like.data_vars.values()) if hasattr(like, "data_vars") else [like]
+    kinds = {str(one.encoding.get("dtype", one.dtype)) for one in arrays if one.ndim >= 2}
+    if len(kinds) != 1:
+        return None
+    declared = [
+        place["_FillValue"]
+        for one in arrays
+        for place in (one.attrs, one.encoding)
+        if "_FillValue" in place
+    ]
+    return CellStorage(np.dtype(kinds.pop()).name, float(declared[0]) if declared else None)
+
+
+def settle_storage(like: Any) -> tuple[CellStorage | None, list[str]]:
+    """Return how cells of floating numbers are kept, as those of another raster, and a note of it.
+
+    Whole numbers are not taken over: they would round what is computed.
+    """
+    stored = None if like is None else as_cells(like).stored_as
+    if stored is None:
+        return None, []
+    kind, nodata = np.dtype(stored.dtype), stored.nodata
+    if kind.kind in "iu":
+        return None, [
+            f"Cells of the other raster are {kind.name}, and these are float64, which are not "
+            "rounded; `dtype` rounds them."
+        ]
+    if kind.kind != "f" or not 4 <= kind.itemsize <= 8:
+        return None, []
+    nodata = None if nodata is None or not math.isfinite(nodata) else float(nodata)
+    if kind.itemsize == 8 and nodata is None:
+        return None, []
+    value = "" if nodata is None else f", those without data as {nodata:g}"
+    return CellStorage(kind.name, nodata), [
+        f"Cells are written as {kind.name}{value}, as those of the other raster."
+    ]
 
 
 def _read_transform(named: Mapping[str, Any]) -> Affine | None:

@@ -14,7 +14,7 @@ from ...base.sentences import counted
 from ...tin import Survey
 from ...tin.report import describe_skipped
 from ...tin.validation import as_points
-from .grids import as_grid, describe_extent
+from .grids import as_grid, describe_extent, settle_storage
 from .ground_heights import place_points
 from .point_cells import add_cells, count_points, find_highest, make_empty
 
@@ -144,16 +144,19 @@ def rasterize_heights(
     block = find_highest(cells, points, heights)
     require_points(block is not None, cells)
     outside = int(np.count_nonzero(np.isnan(heights)))
+    stored_as, told = settle_storage(like)
     return Raster(
         {"height": fill_cells(cells, block, is_count=False)},
         cells,
         crs=None if tin.crs is None else tin.crs.horizontal,
+        stored_as=stored_as,
         units={"height": tin.elevation_unit},
         name="height",
         notes=[
             *(f"The points above: {note}" for note in list_notes(cloud)),
             *noted,
             *notes,
+            *told,
             *describe_points_outside(outside, len(points)),
         ],
     )

@@ -13,7 +13,7 @@ from ...base.progress import Progress
 from ...base.results import Raster
 from ..surface import PlaneMeasure, as_light
 from .bands import SurfaceBand, require_covered
-from .grids import as_grid
+from .grids import as_grid, settle_storage
 from .operators import GridMeasure, OperatorBand, make_measure, require_aligned
 from .relief_bands import ReliefBand, choose_smooth
 
@@ -201,13 +201,15 @@ def rasterize(
             tin, cells, measure, is_smooth=is_smooth, is_mean=is_mean, threads=threads
         )
     held: Any = band if is_lazy else band.compute(done)
+    stored_as, told = settle_storage(like)
     raster = Raster(
         {value: held},
         cells,
         crs=tin.crs if tin.crs is None or value == "elevation" else tin.crs.horizontal,
+        stored_as=stored_as,
         units=list_units(value, tin.crs, tin.elevation_unit),
         name=value,
-        notes=[*describe_unknown(tin.crs, tin.elevation_unit), *notes, *noted],
+        notes=[*describe_unknown(tin.crs, tin.elevation_unit), *notes, *told, *noted],
     )
     done.end()
     return raster

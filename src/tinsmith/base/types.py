@@ -203,6 +203,21 @@ class Affine(NamedTuple):
         )
 
 
+class CellStorage(NamedTuple):
+    """How cells are kept in files where nothing else is asked for.
+
+    Attributes
+    ----------
+    dtype : str
+        Such as "float32".
+    nodata : float or None
+        Value of cells without data; None for that of the raster.
+    """
+
+    dtype: str
+    nodata: float | None = None
+
+
 _MOST_DRIFT = 1e-3
 """Of a cell: so much the last cell may be off if cells are said to be square."""
 

@@ -12,9 +12,16 @@ from ..base.checks import as_length
 from ..base.crs import CRS
 from ..base.errors import OptionError
 from ..base.georeference import require_same_crs
-from ..base.types import Affine, Bounds, Grid
+from ..base.types import Affine, Bounds, CellStorage, Grid
 from ..io.raster import take_cells
-from ..terrain.gridding import add_cells, as_cells, cover, require_cells, require_overlap
+from ..terrain.gridding import (
+    add_cells,
+    as_cells,
+    cover,
+    require_cells,
+    require_overlap,
+    settle_storage,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -41,8 +48,11 @@ def check_cells(spacing: float | None, like: Any, bounds: Bounds | None) -> dict
         require_cells(cells.grid, in_memory=False)
     elif bounds is not None and spacing is not None:
         require_cells(cover(bounds, spacing), in_memory=False)
+    stored_as, noted = settle_storage(cells)
     return {
         "spacing": spacing,
+        "stored_as": None if stored_as is None else list(stored_as),
+        "stored_notes": noted,
         "like": None if cells is None else asdict(cells.grid),
         "like_crs": None if like_crs is None else str(like_crs),
     }
@@ -58,6 +68,15 @@ def settle_cells(points: StoredPoints, options: Mapping[str, Any]) -> dict[str, 
     if like:
         notes = require_same_crs(CRS.of(options["like_crs"]), points.crs, "the other raster")
     return {"grid": asdict(cells), "notes": list(notes)}
+
+
+def find_storage(options: Mapping[str, Any]) -> dict[str, Any]:
+    """Return what a raster of floating numbers is told of its cells in files, and its notes."""
+    stored_as = options["stored_as"]
+    return {
+        "stored_as": None if stored_as is None else CellStorage(*stored_as),
+        "notes": options["stored_notes"],
+    }
 
 
 def make_grid(cells: Mapping[str, Any]) -> Grid:

@@ -70,3 +70,106 @@ def test_cells_without_data_that_have_a_number_get_the_new_one(tmp_path):
     path = ts.write(make([[1, 2], [-1, 4]], nodata=-1), tmp_path / "a.tif", nodata=9)
     with rasterio.open(path) as file:
         assert (file.read(1).tolist(), file.nodata) == ([[1, 2], [9, 4]], 9)
+
+
+# ---------------------------------------------------------------- those of another raster
+
+
+def write_other(path, dtype, nodata, values=None):
+    profile = {"driver": "GTiff", "width": 30, "height": 40, "count": 1, "crs": "EPSG:32616"}
+    place = rasterio.Affine(1, 0, 5e5, 0, -1, 4e6 + 40)
+    with rasterio.open(path, "w", dtype=dtype, nodata=nodata, transform=place, **profile) as file:
+        file.write(np.ones((40, 30), dtype) if values is None else values, 1)
+    return path
+
+
+@pytest.fixture(scope="module")
+def surface():
+    rng = np.random.default_rng(2)
+    points = rng.random((200, 3)) * [30, 40, 9] + [5e5, 4e6, 100]
+    return ts.triangulate(points, crs="EPSG:32616", elevation_unit="m")
+
+
+@pytest.mark.parametrize(
+    ("dtype", "nodata"),
+    [("float32", -9999), ("float32", -9999.9), ("float64", 1e40), ("float32", np.nan),
+     ("float32", None), ("float32", -3.4028234663852886e38)],
+)  # fmt: skip
+def test_a_raster_has_the_type_and_nodata_of_the_one_whose_cells_it_has(
+    surface, tmp_path, dtype, nodata
+):
+    like = write_other(tmp_path / "other.tif", dtype, nodata)
+    made = ts.rasterize(surface, like=like)
+    assert made.bands["elevation"].dtype == np.float64
+    assert np.isnan(made.bands["elevation"]).any()
+    with rasterio.open(like) as one, rasterio.open(ts.write(made, tmp_path / "a.tif")) as other:
+        assert other.dtypes == one.dtypes
+        wanted = np.nan if nodata is None else np.dtype(dtype).type(nodata)
+        np.testing.assert_equal(other.nodata, float(wanted))
+        found = other.read(1, masked=True)
+        np.testing.assert_array_equal(found.mask, np.isnan(made.bands["elevation"]))
+        known = ~found.mask
+        np.testing.assert_array_equal(
+            found.data[known], made.bands["elevation"][known].astype(dtype)
+        )
+        of_dataset = ts.rasterize(surface, like=one)
+    assert str(of_dataset.stored_as) == str(made.stored_as)
+    if made.stored_as is not None:
+        assert f"Cells are written as {dtype}" in made.notes[-1]
+    cloud = ts.Survey(points=surface.points, crs=surface.crs)
+    assert ts.rasterize_counts(cloud, like=made).stored_as is None
+
+
+def test_whole_numbers_are_not_taken_over_and_what_is_asked_for_counts(surface, tmp_path):
+    like = write_other(tmp_path / "other.tif", "int16", -32768)
+    made = ts.rasterize(surface, like=like)
+    assert "Cells of the other raster are int16, and these are float64" in made.notes[-1]
+    with rasterio.open(ts.write(made, tmp_path / "a.tif")) as file:
+        assert (file.dtypes[0], np.isnan(file.nodata)) == ("float64", True)
+    like = write_other(tmp_path / "other.tif", "float32", -9999)
+    made = ts.rasterize(surface, like=like)
+    for asked, wanted in (
+        ({"dtype": "int16"}, ("int16", -9999)),
+        ({"nodata": 0.5}, ("float32", 0.5)),
+        ({"dtype": "float64", "nodata": np.nan}, ("float64", np.nan)),
+    ):
+        with rasterio.open(ts.write(made, tmp_path / "b.tif", **asked)) as file:
+            np.testing.assert_equal((file.dtypes[0], file.nodata), wanted)
+    with pytest.raises(ts.OptionError, match="nodata"):
+        ts.write(made, tmp_path / "c.tif", dtype="uint8")
+
+
+@pytest.mark.filterwarnings("ignore::PendingDeprecationWarning")  # of rioxarray, in affine
+def test_an_array_of_xarray_gives_its_type_and_fill_value(surface, tmp_path):
+    pytest.importorskip("rioxarray")
+    import rioxarray
+
+    like = write_other(tmp_path / "other.tif", "float32", -9999)
+    with rioxarray.open_rasterio(like) as opened:
+        made = ts.rasterize(surface, like=opened.squeeze())
+    assert made.stored_as == ("float32", -9999.0)
+    again = ts.rasterize(surface, like=made.to_xarray())
+    assert again.stored_as is None  # of floats of 64 bits, NaN without data
+
+
+@pytest.mark.parametrize(
+    ("dtype", "nodata"), [("float32", -9999), ("int16", -32768), ("uint8", 255), ("float64", 7)]
+)
+def test_a_raster_that_was_read_is_written_as_it_was(tmp_path, dtype, nodata):
+    values = np.arange(1200).reshape(40, 30) % 200 + 1
+    values[3, :5] = nodata
+    path = write_other(tmp_path / "a.tif", dtype, nodata, values.astype(dtype))
+    again = ts.write(ts.read_raster(path), tmp_path / "b.tif")
+    with rasterio.open(path) as one, rasterio.open(again) as other:
+        assert (other.dtypes, other.nodata) == (one.dtypes, one.nodata)
+        np.testing.assert_array_equal(other.read(1), one.read(1))
+
+
+def test_a_cell_that_has_the_value_without_data_is_refused(surface, tmp_path):
+    level = ts.triangulate(
+        [[5e5, 4e6, 5], [5e5 + 40, 4e6, 5], [5e5, 4e6 + 40, 5]], crs="EPSG:32616"
+    )
+    like = write_other(tmp_path / "other.tif", "float32", 5.0)
+    with pytest.raises(ts.WriteError, match="has the value 5 itself"):
+        ts.write(ts.rasterize(level, like=like), tmp_path / "a.tif")
+    assert not (tmp_path / "a.tif").exists()

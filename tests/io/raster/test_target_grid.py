@@ -22,7 +22,8 @@ def header(**given):
         "path": PATH, "count": 2, "subdatasets": [], "colours": ["gray", "undefined"],
         "dtypes": ["float32", "float32"], "width": 7, "height": 5,
         "transform": reading.Affine(2.0, 0.0, 100.0, 0.0, -3.0, 500.0), "block_height": 1,
-        "block_width": 7, "scales": [1.0, 1.0], "offsets": [0.0, 0.0], "units": [None, None],
+        "block_width": 7, "scales": [1.0, 1.0], "offsets": [0.0, 0.0],
+        "nodata": [None, None], "units": [None, None],
         "crs": None, "limits": Limits(5.0, 1 << 30),
     }  # fmt: skip
     return reading.Header(**{**usual, "meanings": [], "tags": {}, **given})

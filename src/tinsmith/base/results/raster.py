@@ -14,7 +14,7 @@ from ..errors import OptionError
 from ..notes import as_notes
 from ..ranges import require_degrees
 from ..sentences import counted, write_spacing
-from ..types import Grid
+from ..types import CellStorage, Grid
 from .columns import FrozenMapping, Noted, as_name, as_units, frozen_copy, named_items
 
 if TYPE_CHECKING:
@@ -43,6 +43,9 @@ class Raster(Noted):
         Given as a code ("EPSG:32616"), number, WKT or ``pyproj.CRS``.
     nodata : float
         Value of cells without surface; NaN by default.
+    stored_as : CellStorage, optional
+        Type of cells and value without data in files where nothing else is asked for: those of the
+        raster file that it was read from, or whose cells it has.
     units : mapping of str to Unit, str or None
         Of bands: a unit or its symbol, None if it is not known; a band without an entry has none.
     name, notes
@@ -68,6 +71,7 @@ class Raster(Noted):
     grid: Grid
     crs: CRS | None = field(default=None, kw_only=True)
     nodata: float = field(default=math.nan, kw_only=True)
+    stored_as: CellStorage | None = field(default=None, kw_only=True)
     units: Units = field(default_factory=dict, kw_only=True)
     name: str = field(default="", kw_only=True)
     notes: Sequence[str] = field(default=(), kw_only=True)

@@ -23,7 +23,15 @@ from ...terrain.gridding import (
     require_points,
 )
 from ...terrain.parts import as_surface
-from ..cells import Blocks, check_cells, make_grid, name_block, save_block, settle_cells
+from ..cells import (
+    Blocks,
+    check_cells,
+    find_storage,
+    make_grid,
+    name_block,
+    save_block,
+    settle_cells,
+)
 from ..reading import open_store
 from ..tasks import TileProduct
 
@@ -171,13 +179,20 @@ def join(
     blocks: Any = Blocks(folder, records, grid, np.uint32(0) if value == "count" else math.nan)
     told = [one.values for one in records.values() if "count" in one.values]
     outside, count = (sum(one[name] for one in told) for name in ("outside", "count"))
+    stored = {"stored_as": None, "notes": []} if value == "count" else find_storage(options)
     return Raster(
         {value: blocks},
         grid,
         crs=None if points.crs is None else points.crs.horizontal,
+        stored_as=stored["stored_as"],
         units={} if value == "count" else {value: points.elevation_unit},
         name=value,
-        notes=[*points.notes, *options["notes"], *describe_points_outside(outside, count)],
+        notes=[
+            *points.notes,
+            *options["notes"],
+            *stored["notes"],
+            *describe_points_outside(outside, count),
+        ],
     )
 
 

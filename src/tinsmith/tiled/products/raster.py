@@ -33,7 +33,15 @@ from ...terrain.parts import (
     find_reach,
 )
 from ...terrain.surface import as_light
-from ..cells import Blocks, check_cells, make_grid, name_block, save_block, settle_cells
+from ..cells import (
+    Blocks,
+    check_cells,
+    find_storage,
+    make_grid,
+    name_block,
+    save_block,
+    settle_cells,
+)
 from ..tasks import TileProduct, add_units
 
 if TYPE_CHECKING:
@@ -165,17 +173,20 @@ def join(
             f"cover {describe_extent(grid.bounds)}, the points {describe_extent(points.bounds)}."
         )
     blocks: Any = Blocks(folder, records, grid, math.nan)
+    stored = find_storage(options)
     crs, is_elevation = points.crs, value == "elevation"
     return Raster(
         {value: blocks},
         grid,
         crs=crs if crs is None or is_elevation else crs.horizontal,
+        stored_as=stored["stored_as"],
         units=list_units(value, crs, points.elevation_unit),
         name=value,
         notes=[
             *points.notes,
             *describe_unknown(crs, points.elevation_unit),
             *options["notes"],
+            *stored["notes"],
             *([] if is_elevation else [_describe_slopes(options, of_cells)]),
         ],
     )
