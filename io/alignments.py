@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import IO, TYPE_CHECKING, Any
 
 from ..base.atomic import as_path
 from ..base.errors import OptionError, ReadError
 from ..base.notes import naming_file
 from ..base.sentences import FILE, counted
 from ..terrain import Alignment
-from .isolated import translate_system_errors
+from .isolated import as_local_file, translate_system_errors
 from .registry import find_format
 
 if TYPE_CHECKING:
@@ -22,7 +22,7 @@ _HEAD = 4096
 
 
 def read_alignment(
-    path: str | os.PathLike[str],
+    path: str | os.PathLike[str] | IO[Any],
     name: str | int | None = None,
     *,
     crs: CrsLike | None = None,
@@ -34,7 +34,7 @@ def read_alignment(
 
     Parameters
     ----------
-    path : path-like
+    path : path-like or file object
     name : str or int, optional
         Of LandXML the name of the alignment, or its number in the file, from 1; needed if there are
         several.
@@ -85,8 +85,8 @@ def read_alignment(
     ...     ts.read_alignment(ts.write(road, Path(folder, "road.xml"), unit="m"))
     <Alignment axis: 3 elements, from 0 to 182.832>
     """
-    file = as_path(path)
-    with naming_file(file):
+    with as_local_file(path) as place, naming_file(as_path(place)):
+        file = as_path(place)
         with translate_system_errors(file), file.open("rb") as stream:
             head = stream.read(_HEAD)
         kind = _find_kind(head)

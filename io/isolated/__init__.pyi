@@ -6,6 +6,7 @@ from .archives import unpack_member as unpack_member
 from .downloads import download as download
 from .downloads import is_web_address as is_web_address
 from .file_objects import as_bytes as as_bytes
+from .file_objects import as_local_file as as_local_file
 from .file_objects import is_file_object as is_file_object
 from .file_objects import name_stream as name_stream
 from .file_objects import writing_into as writing_into

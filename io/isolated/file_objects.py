@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import re
 import shutil
 from contextlib import contextmanager
 from pathlib import Path
@@ -10,6 +11,8 @@ from typing import IO, TYPE_CHECKING, Any
 
 from ...base.atomic import scratch_folder
 from ...base.errors import FormatError, OptionError
+from ...base.notes import naming_copy
+from .archives import unpack_member
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -18,6 +21,18 @@ if TYPE_CHECKING:
 
 _CHUNK = 1 << 20
 _NAMELESS = "stream"
+_HEAD = 4096
+_BINARY = (".gpkg", ".fgb", ".parquet", ".zip")
+_STARTS = {
+    b"SQLite format 3\0": ".gpkg",
+    b"fgb": ".fgb",
+    b"PAR1": ".parquet",
+    b"PK\x03\x04": ".zip",
+    b"{": ".geojson",
+    b"[": ".json",
+    b"<": ".xml",
+}
+_DXF_START = re.compile(rb"(?:999\r?\n.*\r?\n)*0\r?\nSECTION|AutoCAD Binary DXF")
 
 
 def is_file_object(given: Any) -> bool:
@@ -51,6 +66,37 @@ def name_stream(stream: Any, suffixes: tuple[str, ...] = ()) -> str:
     if isinstance(name, str) and Path(name).name:
         return Path(name).name
     return f"{_NAMELESS}{suffixes[0] if suffixes else ''}"
+
+
+@contextmanager
+def as_local_file(path: Any) -> Iterator[Any]:
+    """Yield a copy of what a file object or a member of an archive holds; a path as it is.
+
+    The copy of a file object without a name has the suffix of what its content shows, of a table
+    if it shows nothing else.
+    """
+    if not is_file_object(path):
+        with unpack_member(path) as member:
+            yield member
+        return
+    content = io.BytesIO(as_bytes(path).read())
+    name = Path(name_stream(path))
+    if not name.suffix:
+        name = name.with_suffix(_find_suffix(content.getbuffer()[:_HEAD].tobytes()))
+    with scratch_folder() as folder:  # which notes name by its name, too
+        copy = Path(folder, name.name)
+        copy.write_bytes(content.getbuffer())
+        with naming_copy(copy, name):
+            yield copy
+
+
+def _find_suffix(head: bytes) -> str:
+    """Return the suffix of a format of lines or tables, by the first bytes of a file."""
+    text = head.removeprefix(b"\xef\xbb\xbf").lstrip()
+    for start, suffix in _STARTS.items():
+        if (head if suffix in _BINARY else text).startswith(start):
+            return suffix
+    return ".dxf" if _DXF_START.match(text) else ".csv"
 
 
 @contextmanager

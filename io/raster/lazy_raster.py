@@ -16,7 +16,7 @@ from ...base.types import CellStorage
 from ...terrain.gridding import as_parts, to_grid
 from ...tin.screening import parse_nodata
 from ..door import names_its_file
-from ..isolated import is_pipe, require_local, require_readable
+from ..isolated import is_file_object, is_pipe, require_local, require_readable
 from ..reprojection import place
 from .header import Header, read_header, stream_strips
 from .meaning import settle_axes
@@ -87,6 +87,9 @@ def read_raster(
     >>> ts.simplify(dem, tolerance=20.0).report.simplification.largest_error <= 20.0
     True
     """
+    if is_file_object(path):
+        allowed = "the name of a file, whose cells are read as they are asked for; tinsmith.read"
+        raise OptionError("path", path, f"{allowed} takes file objects")
     file = as_path(path)
     require_local(path)
     if is_pipe(file):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from typing import TYPE_CHECKING, Any
+from typing import IO, TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -13,6 +13,7 @@ from ...base.notes import naming_file
 from ...base.sentences import FILE
 from ...terrain import Template
 from ..delimited import read_text_table
+from ..isolated import as_local_file
 
 if TYPE_CHECKING:
     import os
@@ -23,12 +24,12 @@ if TYPE_CHECKING:
 _TURNS = ("station", "left", "right")
 
 
-def read_template(path: str | os.PathLike[str]) -> Template | dict[float, Template]:
+def read_template(path: str | os.PathLike[str] | IO[Any]) -> Template | dict[float, Template]:
     r"""Read the template of a corridor, or templates by station, from a table.
 
     Parameters
     ----------
-    path : path-like
+    path : path-like or file object
         A text file (CSV) whose first line names the columns, or JSON with a list of objects. A row
         for each part, from the axis outwards, with the columns of
         :meth:`tinsmith.Template.from_table`; with a ``station`` it belongs to the template of that
@@ -57,21 +58,20 @@ def read_template(path: str | os.PathLike[str]) -> Template | dict[float, Templa
     ...     ts.read_template(file).left.width
     3.5
     """
-    file = as_path(path)
-    with naming_file(file):
-        rows = _read_rows(file)
+    with as_local_file(path) as place, naming_file(as_path(place)):
+        rows = _read_rows(as_path(place))
         try:
             return Template.by_station(rows) or Template.from_table(rows)
         except OptionError as error:
             raise ReadError(f"{FILE} is no template. {error}") from error
 
 
-def read_superelevation(path: str | os.PathLike[str]) -> Float64Array:
+def read_superelevation(path: str | os.PathLike[str] | IO[Any]) -> Float64Array:
     r"""Read superelevation by station from a table, for :func:`tinsmith.corridor`.
 
     Parameters
     ----------
-    path : path-like
+    path : path-like or file object
         A text file (CSV) whose first line names the columns, or JSON with a list of objects. Each
         row has a ``station``, and the slopes ``left`` and ``right``: rise outwards over width.
 
@@ -97,9 +97,8 @@ def read_superelevation(path: str | os.PathLike[str]) -> Float64Array:
     ...     ts.read_superelevation(file)[:, 0]
     array([100., 140.])
     """
-    file = as_path(path)
-    with naming_file(file):
-        rows = _read_rows(file)
+    with as_local_file(path) as place, naming_file(as_path(place)):
+        rows = _read_rows(as_path(place))
         if not rows:
             raise ReadError(f"{FILE} has no row: superelevation needs one at least.")
         found = np.empty((len(rows), len(_TURNS)))

@@ -8,7 +8,7 @@ ring, in the order of its rows.
 from __future__ import annotations
 
 from contextlib import contextmanager
-from typing import TYPE_CHECKING, NamedTuple, TypedDict, Unpack, get_args
+from typing import IO, TYPE_CHECKING, Any, NamedTuple, TypedDict, Unpack, get_args
 
 import numpy as np
 
@@ -20,6 +20,7 @@ from ...base.policies import BreaklineKind
 from ...base.sentences import FILE, height, inflect
 from ...tin import Breakline, Water
 from ...tin.constraints import as_ring
+from ..isolated import as_local_file
 from ..reprojection import checking_crs, settle_unit
 from .elevations import find_named_unit, list_elevation_columns
 from .features import read_features
@@ -66,7 +67,7 @@ class _Lines(NamedTuple):
 
 @contextmanager
 def _reading(
-    path: str | os.PathLike[str],
+    path: str | os.PathLike[str] | IO[Any],
     *,
     crs: CrsLike | None = None,
     target_unit: UnitLike | None = None,
@@ -79,8 +80,9 @@ def _reading(
     table: str = "lines",
 ) -> Iterator[_Lines]:
     """Yield the lines of a file, of which errors speak; ``table`` is what the rows of one make."""
-    file, wanted = as_path(path), Wanted(CRS.of(crs), Unit.of(target_unit), Unit.of(elevation_unit))
-    with naming_file(file), checking_crs(check_crs):
+    wanted = Wanted(CRS.of(crs), Unit.of(target_unit), Unit.of(elevation_unit))
+    with as_local_file(path) as place, naming_file(as_path(place)), checking_crs(check_crs):
+        file = as_path(place)
         if layer is None and where is None and is_point_table(file):
             features = read_point_table(file, wanted, drape=drape, kind=table)
         else:
@@ -90,7 +92,7 @@ def _reading(
 
 
 def read_lines(
-    path: str | os.PathLike[str],
+    path: str | os.PathLike[str] | IO[Any],
     *,
     kind: BreaklineKind | None = None,
     walls: bool = False,
@@ -104,7 +106,7 @@ def read_lines(
 
     Parameters
     ----------
-    path : path-like
+    path : path-like or file object
     crs : CRS, str, int or pyproj.CRS, optional
         CRS wanted, that of the points; default the file's own.
     target_unit : Unit or str, optional
@@ -250,12 +252,14 @@ def read_plain_lines(
         return lines, wanted.crs or features.crs, notes
 
 
-def read_rings(path: str | os.PathLike[str], **options: Unpack[LineOptions]) -> list[Float64Array]:
+def read_rings(
+    path: str | os.PathLike[str] | IO[Any], **options: Unpack[LineOptions]
+) -> list[Float64Array]:
     """Read rings: polygons, all their rings, and closed lines; a text table is one ring.
 
     Parameters
     ----------
-    path : path-like
+    path : path-like or file object
     **options
         As of :func:`read_lines`, but ``kind``.
 
@@ -288,13 +292,13 @@ def read_rings(path: str | os.PathLike[str], **options: Unpack[LineOptions]) -> 
 
 
 def read_polygons(
-    path: str | os.PathLike[str], **options: Unpack[LineOptions]
+    path: str | os.PathLike[str] | IO[Any], **options: Unpack[LineOptions]
 ) -> list[list[Float64Array]]:
     """Read polygons with their islands, as ``holes`` and ``erase`` of a survey take them.
 
     Parameters
     ----------
-    path : path-like
+    path : path-like or file object
     **options
         As of :func:`read_lines`, but ``kind``.
 
@@ -330,7 +334,7 @@ def read_polygons(
 
 
 def read_water(
-    path: str | os.PathLike[str],
+    path: str | os.PathLike[str] | IO[Any],
     *,
     z: float | str | None = None,
     **options: Unpack[LineOptions],
@@ -339,7 +343,7 @@ def read_water(
 
     Parameters
     ----------
-    path : path-like
+    path : path-like or file object
     z : float or str, optional
         Height of all of them, in the unit of the points, or the column that holds it. Default the
         column ``z``, ``level``, ``elevation`` or ``height``; without one the heights of the
@@ -385,7 +389,7 @@ def read_fixed_regions(
 
     Parameters
     ----------
-    path : path-like
+    path : path-like or file object
     **options
         As of :func:`read_lines`, but ``kind`` and ``drape``.
 

@@ -179,7 +179,9 @@ def as_cells(like: Any) -> Cells:
     if all(hasattr(like, name) for name in ("coords", "dims")):
         return _take_coordinates(like)
     raise OptionError(
-        "like", like, "a Raster, a data set of rasterio or xarray, or the path of a raster file"
+        "like",
+        like,
+        "a Raster, a data set of rasterio or xarray, a file object, or the path of a raster file",
     )
 
 

@@ -18,7 +18,7 @@ from ...tin import Breakline, validation
 from ...tin.building import find_crs
 from ...tin.constraints import as_coords
 from ...tin.topology import find_offsets
-from ...tin.validation import find_geometries, require_exact_range
+from ...tin.validation import find_geometries, has_coordinates, require_exact_range
 
 if TYPE_CHECKING:
     from ...base.arrays import AnyArray, Float64Array
@@ -90,7 +90,9 @@ def _refuse(given: Any, what: str) -> LinesError:
 
 
 def _is_one_line(given: Any) -> bool:
-    """Whether it is a table of numbers: an array of two dimensions, or rows of numbers."""
+    """Whether it is a table of numbers: of columns, of two dimensions, or rows of numbers."""
+    if has_coordinates(given):
+        return True
     if isinstance(given, np.ndarray) and given.dtype != object:
         return given.ndim == 2
     if hasattr(given, "columns") or not isinstance(given, Sequence) or isinstance(given, str):

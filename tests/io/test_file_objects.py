@@ -2,6 +2,7 @@
 
 import io
 import warnings
+import zipfile
 
 import numpy as np
 import pytest
@@ -122,3 +123,64 @@ def test_a_logger_hears_what_is_read_and_written(tmp_path, caplog):
     assert [one.getMessage() for one in caplog.records] == [
         f"Wrote stream as delimited: {survey!r}"
     ]
+
+
+# ---------------------------------------------------------------- lines, axes, tables, cells
+
+LINE = ts.Features(
+    kind="lines", coordinates=HILL.points[[0, 21, 45]], offsets=[[0, 3]], crs=HILL.crs
+)
+POLYGON = ts.Features(
+    kind="polygons",
+    coordinates=HILL.points[[0, 19, 399, 0]] * [1, 1, 0] + [0, 0, 5],
+    offsets=[[0, 4], [0, 1]],
+    crs=HILL.crs,
+)
+READERS = {
+    "read_lines": (LINE, lambda lines: lines[0].coords),
+    "read_rings": (POLYGON, lambda rings: rings[0]),
+    "read_polygons": (POLYGON, lambda polygons: polygons[0][0]),
+    "read_water": (POLYGON, lambda ponds: ponds[0].ring),
+    "read_alignment": (LINE, lambda axis: axis.points_at([0.0, 10.0])),
+}
+
+
+@pytest.mark.parametrize("name", READERS)
+@pytest.mark.parametrize("format_name", ["gpkg", "flatgeobuf", "geoparquet", "geojson"])
+def test_lines_and_rings_of_a_buffer_are_those_of_a_file(tmp_path, name, format_name):
+    made, take = READERS[name]
+    path = tmp_path / f"lines{ts.find_format(format_name).suffixes[0]}"
+    ts.write(made, path, format=format_name)
+    read = getattr(ts, name)
+    wanted = take(read(path, crs=HILL.crs))
+    for buffer in (io.BytesIO(path.read_bytes()), path.open("rb")):
+        with buffer:
+            np.testing.assert_array_equal(take(read(buffer, crs=HILL.crs)), wanted)
+    with zipfile.ZipFile(tmp_path / "all.zip", "w") as archive:
+        archive.write(path, path.name)
+    member = f"/vsizip/{tmp_path / 'all.zip'}/{path.name}"
+    np.testing.assert_array_equal(take(read(member, crs=HILL.crs)), wanted)
+
+
+def test_tables_of_a_buffer(tmp_path):
+    text = "side,name,width,slope,use,ratio\nboth,lane,3.5,-0.025,turns,\nboth,,,,cut,1.5\n"
+    (tmp_path / "road.csv").write_text(text + "both,,,,fill,2\n")
+    wanted = ts.read_template(tmp_path / "road.csv")
+    assert ts.read_template(io.StringIO(text + "both,,,,fill,2\n")) == wanted
+    rows = b'[{"station": 100, "left": -0.025, "right": 0.5}]'
+    assert ts.read_superelevation(io.BytesIO(rows)).tolist() == [[100.0, -0.025, 0.5]]
+    (line,) = ts.read_lines(io.StringIO("x,y,z\n0,0,1\n1,0,2\n"))
+    assert line.coords.tolist() == [[0, 0, 1], [1, 0, 2]]
+
+
+def test_faults_in_a_buffer_speak_of_its_name(tmp_path):
+    with pytest.raises(ts.ReadError, match=r"^'stream\.geojson'"):
+        ts.read_lines(io.BytesIO(b'{"type": "FeatureCollection", "features": []}'))
+    path = tmp_path / "named.gpkg"
+    path.write_bytes(b"SQLite format 3\0 and no more")
+    with path.open("rb") as file, pytest.raises(ts.ReadError, match=r"^'named\.gpkg'"):
+        ts.read_rings(file)
+    with pytest.raises(ts.OptionError, match="cells are read as they are asked for"):
+        ts.read_raster(io.BytesIO(b"II*\0"))
+    with pytest.raises(ts.ReadError, match=r"stream\.tif"):
+        ts.rasterize(HILL, like=io.BytesIO(b"no raster"))

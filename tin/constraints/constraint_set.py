@@ -13,7 +13,7 @@ from ...base.records import require, require_finite, require_indices, require_of
 from ...base.sentences import coordinate, shown
 from .. import _kernel
 from ..topology import find_offsets, find_owners
-from ..validation import find_geometries, is_plain
+from ..validation import find_geometries, has_coordinates, is_plain
 from .breaklines import Breakline, Water, as_ring
 from .constraint_table import ConstraintTable
 from .given_geometries import convert_geometries
@@ -258,7 +258,7 @@ def as_sequence(lines: Any, what: str) -> list[Any]:
     Geometries become breaklines, regions or water, as ``what`` says: one for each of their parts.
     """
     if type(lines) in (tuple, list):
-        return _convert_each(lines, what)
+        return [lines] if _is_one(lines) else _convert_each(lines, what)
     if isinstance(lines, Breakline | Water):
         return [lines]
     if isinstance(lines, np.ndarray) and lines.ndim == 2 and lines.dtype != object:
@@ -266,11 +266,23 @@ def as_sequence(lines: Any, what: str) -> list[Any]:
     found = find_geometries(lines)
     if found is not None:
         return convert_geometries(found, what)
+    if has_coordinates(lines):  # a table, whose rows are the vertices of one
+        return [lines]
     if not isinstance(lines, str | bytes | Mapping):
         with suppress(TypeError, LookupError):  # whatever it is, it gives no lines
             return _convert_each(list(lines), what)
     raise LinesError(
         f"Invalid {what} {shown(lines)}: a sequence of lines is needed, each an array of vertices."
+    )
+
+
+def _is_one(lines: Sequence[Any]) -> bool:
+    """Whether rows are those of one line, each two or three numbers, and no lines."""
+    return len(lines) > 0 and all(
+        isinstance(row, list | tuple)
+        and len(row) in (2, 3)
+        and all(isinstance(number, int | float | np.number) for number in row)
+        for row in lines
     )
 
 

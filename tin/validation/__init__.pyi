@@ -15,6 +15,7 @@ from .points import require_exact_range as require_exact_range
 from .points import require_three as require_three
 from .tables import Table as Table
 from .tables import as_table as as_table
+from .tables import has_coordinates as has_coordinates
 from .threads import available_cores as available_cores
 from .threads import thread_count as thread_count
 from .triangles import as_flags as as_flags

@@ -59,6 +59,11 @@ def as_table(given: Any, what: str, *, least: int = 3, most: int = 3) -> Table:
     """
     if _is_plain(given):
         return Table(_as_numbers(given, what))
+    if hasattr(given, "n_cells") and hasattr(given, "points"):
+        raise PointsError(
+            f"{what} are a mesh of PyVista: tinsmith.from_mesh takes its triangles, and `.points` "
+            "are its points."
+        )
     # refuse the cells of a raster, whose rows are no points
     dimensions = getattr(given, "dims", ())
     is_named = isinstance(dimensions, tuple | Mapping)
@@ -83,6 +88,13 @@ def as_table(given: Any, what: str, *, least: int = 3, most: int = 3) -> Table:
             )
     columns = [given[found[role]] for role in COORDINATES[:most] if role in found]
     return _stack(columns, what)
+
+
+def has_coordinates(given: Any) -> bool:
+    """Whether a value has columns of eastings and northings by their names."""
+    names = _find_names(given)
+    roles = set() if names is None else {_ROLE_OF.get(str(one).strip().casefold()) for one in names}
+    return {"easting", "northing"} <= roles
 
 
 def _is_plain(given: Any) -> bool:

@@ -26,13 +26,22 @@ _STEM = 40
 def as_path(path: Any, option: str = "path") -> Path:
     """Return the path of a file, or refuse what is none."""
     if not isinstance(path, str | os.PathLike) or isinstance(os.fspath(path), bytes):
-        raise OptionError(option, path, "the name of a file, as text or Path")
+        raise OptionError(option, path, f"the name of a file, as text or Path{_find_hint(path)}")
     try:
         os.fsencode(path)
     except UnicodeEncodeError:
         allowed = "a name that can be written in the encoding of file names"
         raise OptionError(option, ascii(os.fspath(path)), allowed) from None
     return Path(path)
+
+
+def _find_hint(given: Any) -> str:
+    """Return what else may be meant, for a sentence."""
+    if isinstance(given, bytes | bytearray | memoryview):
+        return "; io.BytesIO makes a file object of what a file holds"
+    if hasattr(given, "dims") or (hasattr(given, "transform") and hasattr(given, "shape")):
+        return "; tinsmith.from_raster takes rasters of other libraries"
+    return ""
 
 
 @overload

@@ -296,3 +296,32 @@ def test_geometries_that_are_no_lines_are_refused(act, sentence):
 def test_points_in_doubt_are_refused(points, sentence):
     with pytest.raises(ts.PointsError, match=sentence):
         ts.triangulate(points)
+
+
+RING_FORMS = {
+    "rows": SQUARE.tolist(),
+    "tuples": [tuple(row) for row in SQUARE.tolist()],
+    "frame": pd.DataFrame(SQUARE, columns=["x", "y"]),
+    "columns": {"easting": SQUARE[:, 0], "northing": SQUARE[:, 1]},
+    "dataset": xarray.Dataset({"x": ("row", SQUARE[:, 0]), "y": ("row", SQUARE[:, 1])}),
+    "polars": pl.DataFrame({"x": SQUARE[:, 0], "y": SQUARE[:, 1]}),
+    "structured": np.array([tuple(row) for row in SQUARE], [("x", float), ("y", float)]),
+}
+
+
+@pytest.mark.parametrize("form", RING_FORMS)
+@pytest.mark.parametrize("role", ["boundary", "holes", "erase", "breaklines"])
+def test_one_line_needs_no_list_around_it(role, form):
+    found, wanted = (ts.triangulate(POINTS, **{role: one}) for one in (RING_FORMS[form], [SQUARE]))
+    assert not find_differences(found, wanted)
+
+
+@pytest.mark.parametrize("form", RING_FORMS)
+def test_a_table_is_a_line_to_drape_and_to_cut_along(form):
+    tin = ts.triangulate(POINTS)
+    for product in (ts.drape, lambda tin, line: ts.profile({"a": tin}, line)):
+        found, wanted = (product(tin, one) for one in (RING_FORMS[form], SQUARE))
+        columns = {**getattr(found, "columns", {})}
+        assert {*columns} == {*getattr(wanted, "columns", {})}
+        if hasattr(found, "coordinates"):
+            np.testing.assert_array_equal(found.coordinates, wanted.coordinates)

@@ -186,7 +186,7 @@ def _require_transform(grid: Grid) -> None:
     """Refuse bounds and spacing that are not those of the geotransform."""
     wanted = Grid.of_transform(grid.transform, grid.shape)
     of_bounds = [[one.xmin, one.ymin, one.xmax, one.ymax] for one in (grid.bounds, wanted.bounds)]
-    rounding = _FEWEST_ULPS * float(np.spacing(np.abs(of_bounds[1]).max()))
+    rounding = _FEWEST_ULPS * math.ulp(max(map(abs, of_bounds[1])))
     if not np.abs(np.subtract(*of_bounds)).max() <= rounding:
         raise OptionError("bounds of the grid", grid.bounds, f"those of its cells, {wanted.bounds}")
     if np.ravel(grid.spacing).tolist() != np.ravel(wanted.spacing).tolist():
