@@ -6,7 +6,7 @@ import pickle
 import pytest
 
 import tinsmith as ts
-from tinsmith.base.lazy import _CALLED
+from tinsmith.base.lazy import _CALLED, _CALLED_BY_CLASS
 
 TIN = ts.triangulate([[0, 0, 5], [4, 0, 6], [0, 3, 8]])
 
@@ -18,6 +18,19 @@ def test_names_of_other_libraries_lead_to_what_there_is(name, called):
         getattr(TIN, name)
     eval(called.replace("tinsmith", "ts"), {"ts": ts, **{k: getattr(TIN, k) for k in dir(TIN)},
                                             "tin": TIN})  # fmt: skip
+
+
+RASTER = ts.rasterize(TIN, spacing=1.0)
+
+
+@pytest.mark.parametrize(("name", "called"), _CALLED_BY_CLASS["Raster"].items())
+def test_names_of_rasterio_and_xarray_lead_to_what_a_raster_has(name, called):
+    assert not hasattr(RASTER, name)
+    with pytest.raises(AttributeError, match=f"A Raster has no '{name}': use `"):
+        getattr(RASTER, name)
+    own = {"ts": ts, **{k: getattr(RASTER, k) for k in dir(RASTER)}}
+    eval(called.replace("tinsmith", "ts"), own)
+    assert copy.deepcopy(RASTER).grid == pickle.loads(pickle.dumps(RASTER)).grid == RASTER.grid
 
 
 def test_functions_and_near_names_are_named():

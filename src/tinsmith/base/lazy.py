@@ -33,6 +33,19 @@ _CALLED = {
     "show": "plot",
 }
 """By names of SciPy, triangle, trimesh, PyVista, startinpy and GeoPandas those of this package."""
+_CALLED_BY_CLASS = {
+    "Raster": {
+        **{name: f"grid.{name}" for name in ("transform", "bounds", "spacing", "cell_size")},
+        **dict.fromkeys(("affine", "geotransform"), "grid.transform"),
+        **dict.fromkeys(("res", "resolution"), "grid.spacing"),
+        **dict.fromkeys(("values", "data", "array", "read"), "bands"),
+        **dict.fromkeys(("width", "height", "size"), "shape"),
+        **dict.fromkeys(("nodatavals",), "nodata"),
+        **dict.fromkeys(("rio", "to_dataset"), "to_xarray()"),
+        **dict.fromkeys(("save", "to_file", "to_raster"), "tinsmith.write"),
+    }
+}
+"""The same of a raster, by names of rasterio, xarray and rioxarray."""
 _FUNCTIONS: dict[str, str] = {}
 """The function behind each method whose work is done by a package above the one of its class."""
 
@@ -120,11 +133,12 @@ def describe_attribute(kind: type, name: str) -> str:
     """
     public = import_module(__package__.partition(".")[0]).__all__
     what = f"A {kind.__name__} has no '{name}'"
-    found = _CALLED.get(name)
-    if found is None and name in public and name.islower():
+    owner = "raster" if kind.__name__ in _CALLED_BY_CLASS else "tin"
+    found = _CALLED_BY_CLASS.get(kind.__name__, _CALLED).get(name)
+    if found is None and owner == "tin" and name in public and name.islower():
         found = f"tinsmith.{name}"
     if found is not None:
-        call = "(tin, ...)" if found.startswith("tinsmith.") else ""
+        call = f"({owner}, ...)" if found.startswith("tinsmith.") else ""
         return f"{what}: use `{found}{call}`."
     known = [one for one in dir(kind) if not one.startswith("_")]
     return f"{what}.{suggest(name, known)}"

@@ -11,6 +11,7 @@ import numpy as np
 from ..checks import as_floats, as_length
 from ..crs import CRS, shorten_crs
 from ..errors import OptionError
+from ..lazy import raise_missing
 from ..notes import as_notes
 from ..ranges import require_degrees
 from ..sentences import counted, write_spacing
@@ -103,6 +104,11 @@ class Raster(Noted):
         """Rows and columns."""
         return self.grid.shape
 
+    if not TYPE_CHECKING:  # which would take any name for an attribute
+
+        def __getattr__(self, name: str) -> Any:
+            raise_missing(self, name)
+
     def to_xarray(self) -> Any:
         """Return a data set of xarray, with a variable for each band.
 
@@ -185,9 +191,11 @@ def require_grid(grid: Any) -> None:
 def _require_transform(grid: Grid) -> None:
     """Refuse bounds and spacing that are not those of the geotransform."""
     wanted = Grid.of_transform(grid.transform, grid.shape)
-    of_bounds = [[one.xmin, one.ymin, one.xmax, one.ymax] for one in (grid.bounds, wanted.bounds)]
-    rounding = _FEWEST_ULPS * math.ulp(max(map(abs, of_bounds[1])))
-    if not np.abs(np.subtract(*of_bounds)).max() <= rounding:
+    given, found = (
+        np.array([one.xmin, one.ymin, one.xmax, one.ymax]) for one in (grid.bounds, wanted.bounds)
+    )
+    rounding = _FEWEST_ULPS * math.ulp(float(np.abs(found).max()))
+    if not np.abs(given - found).max() <= rounding:
         raise OptionError("bounds of the grid", grid.bounds, f"those of its cells, {wanted.bounds}")
     if np.ravel(grid.spacing).tolist() != np.ravel(wanted.spacing).tolist():
         allowed = f"that of its cells, {wanted.spacing!r}"
