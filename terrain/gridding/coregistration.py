@@ -229,13 +229,13 @@ def coregister(
     masks, notes = _read_masks(polygons, tin.crs)
     before = pair.sample(np.zeros(3), pair.grid, masks).apart
     if len(before) < _FEWEST:
-        raise PointsError(_describe_few(len(before), pair.grid.spacing))
+        raise PointsError(_describe_few(len(before), pair.grid.cell_size[0]))
     shift, steps = _find_shift(pair, masks, done)
     found = pair.sample(shift, pair.grid, masks)
     _require_likeness(found, tin.crs)
     shift[2] -= float(np.median(found.apart))
     after = found.apart - np.median(found.apart)
-    rounding = _ROUNDING * (pair.grid.spacing + abs(float(np.median(before))))
+    rounding = _ROUNDING * (pair.grid.cell_size[0] + abs(float(np.median(before))))
     if not measure_nmad(after) <= _WORSE * measure_nmad(before) + rounding:
         raise PointsError(
             "No shift was found by which the surfaces differ less: the NMAD of their differences "
@@ -278,16 +278,16 @@ class _Pair:
 
     def make_grid(self, times: int) -> Grid:
         """Return the grid of cells so many times as wide."""
-        return cover(self._shared, self.grid.spacing * times)
+        return cover(self._shared, self.grid.cell_size[0] * times)
 
     def sample(self, shift: Float64Array, grid: Grid, masks: _Masks) -> _Samples:
         """Return what both surfaces have in cells, one of them shifted."""
         box, (east, north, up) = grid.bounds, shift.tolist()
         back = Bounds(box.xmin - east, box.ymin - north, box.xmax - east, box.ymax - north)
-        moved = Grid(back, shape=grid.shape, spacing=grid.spacing)
+        moved = Grid(back, shape=grid.shape, spacing=grid.cell_size[0])
         z = self._draw(self._reference, grid) * self._factors[0]
         own = self._draw(self._tin, moved) * self._factors[1] + up
-        slopes = [_find_slopes(one, grid.spacing) for one in (own, z)]
+        slopes = [_find_slopes(one, grid.cell_size[0]) for one in (own, z)]
         is_known = np.isfinite(own - z)
         for side in (*slopes[0], *slopes[1]):
             is_known &= np.isfinite(side)
@@ -393,11 +393,11 @@ def _find_shift(pair: _Pair, masks: _Masks, done: Progress) -> tuple[Float64Arra
             steps += 1
             path.append(shift[:2].copy())
             done((level + step / _MOST_STEPS) / len(_COARSER))
-            if math.hypot(*rest[:2].tolist()) <= _SMALLEST_STEP * pair.grid.spacing:
+            if math.hypot(*rest[:2].tolist()) <= _SMALLEST_STEP * pair.grid.cell_size[0]:
                 break
         else:
             if is_last:
-                _require_end(path, pair.grid.spacing)
+                _require_end(path, pair.grid.cell_size[0])
     return shift, steps
 
 
@@ -495,7 +495,7 @@ def _describe_cells(count: int, grid: Grid, polygons: Mapping[str, Any]) -> str:
     chosen = any(one is not None for one in polygons.values())
     where = "on stable ground" if chosen else "that both surfaces have"
     return (
-        f"The shift is of {counted(count, 'cell')} {grid.spacing:g} wide {where}, "
+        f"The shift is of {counted(count, 'cell')} {grid.cell_size[0]:g} wide {where}, "
         f"{describe_extent(grid.bounds)}."
     )
 

@@ -42,6 +42,47 @@ def test_the_cells_of_another_raster(tmp_path, surface):
 
 
 @pytest.mark.parametrize(
+    ("transform", "size"),
+    [
+        ((4.0, 0.0, 500_000.0, 0.0, 2.5, 4e6 + 5), "of 4 by 2.5"),
+        ((3.0, 4.0, 500_020.0, 4.0, -3.0, 4e6 + 40), "of 5"),
+    ],
+)
+def test_the_cells_of_any_other_raster(tmp_path, surface, transform, size):
+    like = tmp_path / "like.tif"
+    place = rasterio.Affine(*transform)
+    profile = {"width": 12, "height": 9, "count": 1, "dtype": "float32", "nodata": -9999.0}
+    with rasterio.open(like, "w", transform=place, crs="EPSG:32616", **profile) as file:
+        file.write(np.zeros((1, 9, 12), np.float32))
+    points = ts.write(ts.Survey(points=ts.read(surface).points), tmp_path / "cloud.csv")
+    for source, more in (
+        (surface, ()),
+        (surface, ("--value", "hillshade")),
+        (points, ("--crs", "EPSG:32616", "--value", "count")),
+        (points, ("--crs", "EPSG:32616", "--value", "canopy", "--above", points)),
+        (points, ("--crs", "EPSG:32616", "--tiles", 3)),
+    ):
+        path = tmp_path / "made.tif"
+        out = run("raster", source, "--like", like, *more, "-o", path, "--json")
+        assert out.exit_code == 0, out.output
+        with rasterio.open(path) as file:
+            assert (file.transform, file.shape) == (place, (9, 12))
+            if "count" not in more:
+                assert (file.dtypes[0], file.nodata) == ("float32", -9999.0)
+        facts = json.loads(out.stdout)
+        assert facts["bounds"]["xmin"] == 500_000.0 + 20 * bool(transform[1])
+        assert str(facts["spacing"]) in ("[4.0, 2.5]", "5.0")
+        path.unlink()
+    out = run("raster", surface, "--like", like, "-o", tmp_path / "made.tif")
+    assert size in out.output
+    if transform[1]:
+        refused = refuse("raster", surface, "--like", like, "-o", tmp_path / "a.asc", code=1)
+        assert "GeoTIFF holds any" in refused
+        horn = ("--value", "slope", "--operator", "horn", "-o", tmp_path / "b.tif")
+        assert "rotated or sheared" in refuse("raster", surface, "--like", like, *horn, code=2)
+
+
+@pytest.mark.parametrize(
     ("options", "code", "sentence"),
     [
         ((), 2, "One of --spacing and --like is needed."),
