@@ -12,7 +12,7 @@ from ...base.crs import CRS
 from ...base.errors import OptionError, PointsError
 from ...base.georeference import require_same_crs
 from ...base.results import Raster, require_grid
-from ...base.sentences import coordinate, counted
+from ...base.sentences import coordinate, counted, shown
 from ...base.types import Affine, Bounds, CellStorage, Grid
 
 if TYPE_CHECKING:
@@ -173,7 +173,7 @@ def as_cells(like: Any) -> Cells:
     if isinstance(like, Raster):
         return Cells(like.grid, like.crs, like.stored_as or _find_storage(like))
     if all(hasattr(like, name) for name in ("transform", "shape", "crs")):
-        grid, crs = to_grid(tuple(like.transform)[:6], like.shape), like.crs
+        grid, crs = to_grid(like.transform, like.shape), like.crs
         stored = CellStorage(like.dtypes[0], like.nodata) if hasattr(like, "dtypes") else None
         return Cells(grid, CRS.of(crs.to_wkt()) if crs else None, stored)
     if all(hasattr(like, name) for name in ("coords", "dims")):
@@ -194,8 +194,9 @@ def to_grid(transform: Sequence[float], shape: Sequence[int], what: Any = "raste
     try:
         return Grid.of_transform(transform, shape)
     except OptionError as error:
-        numbers = ", ".join(f"{float(number):g}" for number in transform)
-        allowed = f"a raster whose cells have an area (its geotransform is {numbers})"
+        if error.option != "transform":
+            raise
+        allowed = f"a raster whose cells have an area (its geotransform is {shown(transform)})"
         raise OptionError("like", what, allowed) from error
 
 

@@ -52,6 +52,7 @@ def generate(rng: np.random.Generator) -> Case:
         "value": str(rng.choice(VALUES)),
         "method": str(rng.choice(["linear", "linear", "nearest", "natural"])),
         "smooth": bool(rng.random() < 0.3),
+        "operator": str(rng.choice(["", "", "horn", "zevenbergen-thorne"])),
         "threads": int(rng.integers(1, 3)),
         "cut": rng.random(4).tolist(),
     }
@@ -132,22 +133,26 @@ def require_centers(tin: Any, raster: Any, places: Any, case: Case) -> None:
 def require_values(tin: Any, grid: ts.Grid, places: Any, case: Case) -> None:
     value, rows, columns = case["value"], *grid.shape
     asked: dict[str, Any] = {"value": value}
-    if value in ("slope", "aspect", "hillshade"):
+    is_of_cells = value in ("tri", "roughness", "mean-curvature")
+    if not is_of_cells and case["operator"] and value != "elevation":
+        asked["operator"], is_of_cells = case["operator"], True
+    elif value in ("slope", "aspect", "hillshade"):
         asked["smooth"] = case["smooth"]
     try:
         made = ts.rasterize(tin, grid=grid, **asked).bands[value]
     except ts.PointsError:
-        assert value in ("tri", "roughness", "mean-curvature"), "no value"
+        assert is_of_cells, "no value"
         return
     except ts.OptionError:
-        assert value == "mean-curvature", "refused"
+        assert is_of_cells, "refused"
+        assert value not in ("tri", "roughness"), "refused"
         assert not grid.is_aligned, "refused of cells that are not rotated"
         return
     lazy = ts.rasterize(tin, grid=grid, lazy=True, **asked).bands[value]
     top, left = int(case["cut"][0] * rows), int(case["cut"][1] * columns)
     block = slice(top, top + 1 + int(case["cut"][2] * 9)), slice(left, left + 1)
     assert np.array_equal(lazy[block], made[block], equal_nan=True), "a block"
-    if value in ("slope", "aspect") and not case["smooth"]:
+    if value in ("slope", "aspect") and not case["smooth"] and not is_of_cells:
         require_gradients(tin, places, made.ravel(), value)
     if not grid.is_aligned:
         return

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from operator import index
 from typing import TYPE_CHECKING, Any, NamedTuple, Protocol, TypeAlias, TypeVar
 
 import numpy as np
@@ -257,7 +258,7 @@ class Grid:
         if self.transform is None:
             object.__setattr__(self, "transform", self._find_usual_transform())
         elif not isinstance(self.transform, Affine):
-            object.__setattr__(self, "transform", Affine(*map(float, self.transform)))
+            object.__setattr__(self, "transform", as_affine(self.transform))
 
     @classmethod
     def of_transform(cls, transform: Sequence[float], shape: Sequence[int]) -> Grid:
@@ -274,7 +275,7 @@ class Grid:
         Raises
         ------
         OptionError
-            If numbers are missing or not finite, or cells have no area.
+            If numbers are missing or not finite, cells have no area, or there is none.
 
         Examples
         --------
@@ -282,7 +283,7 @@ class Grid:
         >>> turned.spacing, turned.is_north_up
         (1.0, False)
         """
-        affine, (rows, columns) = as_affine(transform), (int(side) for side in shape)
+        affine, (rows, columns) = as_affine(transform), _as_shape(shape)
         x, y = affine.apply(
             np.array([0.0, columns, 0.0, columns]), np.array([0.0, 0.0, rows, rows])
         )
@@ -338,6 +339,16 @@ def as_affine(transform: Any) -> Affine:
     if not (np.isfinite(area) and area > _LEAST_SINE * width * height > 0.0):
         raise OptionError("transform", tuple(numbers), "one whose cells have an area")
     return affine
+
+
+def _as_shape(shape: Any) -> tuple[int, int]:
+    try:
+        rows, columns = (index(side) for side in shape)
+    except (TypeError, ValueError):
+        rows = columns = 0
+    if rows < 1 or columns < 1:
+        raise OptionError("shape of the grid", shape, "1 or more rows and columns")
+    return rows, columns
 
 
 _LEAST_SINE = 2.0**-40

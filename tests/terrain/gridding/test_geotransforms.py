@@ -10,6 +10,7 @@ import io
 import json
 import shutil
 import subprocess
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -456,6 +457,11 @@ HOSTILE = {
     ),
     "no rows": ((2.0, 0.0, EAST, 0.0, -2.0, NORTH), (0, 4), "1 or more rows"),
     "too many": ((1e-3, 0.0, EAST, 0.0, -2.0, NORTH), (2**20, 2**20), "number of cells"),
+    "rows that are no number": ((2.0, 0.0, EAST, 0.0, -2.0, NORTH), ("a", 4), "1 or more rows"),
+    "one side": ((2.0, 0.0, EAST, 0.0, -2.0, NORTH), (4,), "1 or more rows"),
+    "half a row": ((2.0, 0.0, EAST, 0.0, -2.0, NORTH), (4.5, 4), "1 or more rows"),
+    "a word": ("abcdef", SHAPE, "six finite numbers"),
+    "nothing": (None, SHAPE, "six finite numbers"),
     "five numbers": ((1.0, 0.0, EAST, 0.0, -2.0), SHAPE, "six finite numbers"),
 }  # fmt: skip
 
@@ -465,6 +471,14 @@ def test_hostile_geotransforms_are_refused_in_a_sentence(name):
     transform, shape, sentence = HOSTILE[name]
     with pytest.raises(ts.OptionError, match=sentence) as caught:
         ts.rasterize(TIN, grid=ts.Grid.of_transform(transform, shape))
+    assert str(caught.value).count(". ") == 0
+
+
+@pytest.mark.parametrize("name", HOSTILE)
+def test_hostile_data_sets_of_others_are_refused_in_a_sentence(name):
+    transform, shape, _ = HOSTILE[name]
+    with pytest.raises(ts.OptionError) as caught:
+        ts.rasterize(TIN, like=SimpleNamespace(transform=transform, shape=shape, crs=None))
     assert str(caught.value).count(". ") == 0
 
 
