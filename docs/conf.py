@@ -4,6 +4,7 @@ Pages are Markdown that reads well where it lies. The source folder is the root 
 links between its pages, programs and samples are the same in the site as in the repository.
 """
 
+import re
 import sys
 from pathlib import Path
 
@@ -56,3 +57,19 @@ html_theme_options = {
     "dark_css_variables": {"color-brand-primary": "#e3a66b", "color-brand-content": "#e3a66b"},
 }
 copybutton_prompt_text = "$ "
+
+
+def _serve_keys_and_readers(_app, _page, _template, context, _doctree):
+    """Let keys scroll wide code and tables, and tell the level of headings of the side bar."""
+    body = context.get("body", "").replace("<pre>", '<pre tabindex="0">')
+    wide = re.compile(r'<div class="table-wrapper[^"]*"')
+    context["body"] = wide.sub(lambda found: f'{found[0]} tabindex="0"', body)
+    tree = context.get("furo_navigation_tree", "")
+    context["furo_navigation_tree"] = tree.replace(
+        'class="caption" role="heading"', 'class="caption" role="heading" aria-level="2"'
+    )
+
+
+def setup(app):
+    """Change pages after the theme has made them."""
+    app.connect("html-page-context", _serve_keys_and_readers, priority=900)

@@ -1,4 +1,4 @@
-"""Make the pictures of preview.md: pages of both samples, without and with an ortho.
+"""Make the pictures of preview.md: pages of both samples and of a tileset, and with an ortho.
 
 Run ``python docs/make_preview.py [FOLDER]``; needs the extras "raster" and "view", Chromium and
 playwright. The orthos are invented: land cover by elevation and slope, in a GeoTIFF each,
@@ -12,7 +12,7 @@ import sys
 import warnings
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 import rasterio
@@ -28,8 +28,13 @@ SAMPLES = HERE.parent / "sample_data"
 ORTHOS = HERE.parent / "build" / "orthos"
 CRS = "EPSG:32616"
 COLORS = 128
+SIZE = (1200, 740)
 ARGUMENTS = ("--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader")
 SHOW = "p.scene.draw(); p.tool.read(460, 400);"
+SHOW_TILES = """p.scene.zoom(2.2); p.scene.move(0.05, -0.05);
+  document.getElementById("edges").click();
+  await p.tileset.settle(); p.scene.draw();
+  const { clientWidth: w, clientHeight: h } = p.scene.canvas; p.tool.read(0.5 * w, 0.5 * h);"""
 SHOW_EPOCHS = """document.getElementById("comparing").click(); p.tool.choose("distance");
   await new Promise((done) => setTimeout(done, 500));
   const { clientWidth: w, clientHeight: h } = p.scene.canvas;
@@ -51,6 +56,7 @@ def main(folder: Path = HERE) -> None:
         show=SHOW_EPOCHS,
     )
     draw_page(ts.preview(hills, title="Jacksboro, Tennessee"), folder / "preview-hills.png")
+    draw_tileset(folder / "preview-tileset.png")
     ortho = paint_site(site)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", ts.LossWarning)
@@ -73,16 +79,32 @@ def move_ground(tin: ts.TIN) -> ts.TIN:
     return tin.replace(points=points)
 
 
-def draw_page(shown: Any, path: Path, show: str = SHOW) -> None:
+def draw_tileset(path: Path, size: tuple[int, int] = SIZE) -> None:
+    """Take a picture of the page of a tileset, as it is served."""
+    with TemporaryDirectory() as folder, warnings.catch_warnings():
+        warnings.simplefilter("ignore", ts.LossWarning)
+        cloud = ts.tiles(SAMPLES / "jacksboro.tif")
+        cloud.write(Path(folder, "terrain"), format="3dtiles", node_points=500)
+        shown = ts.preview_tileset(Path(folder, "terrain"), title="Jacksboro, Tennessee")
+        with shown.serve() as address:
+            draw_address(address, path, show=SHOW_TILES, size=size)
+
+
+def draw_page(shown: ts.Preview, path: Path, show: str = SHOW) -> None:
+    """Take a picture of a page that is opened from a file."""
+    with TemporaryDirectory() as folder:
+        draw_address(shown.save(Path(folder, "page.html")).as_uri(), path, show=show)
+
+
+def draw_address(address: str, path: Path, *, show: str, size: tuple[int, int] = SIZE) -> None:
     """Take a picture of a page as Chromium shows it, in few colours."""
     from playwright.sync_api import sync_playwright
 
     browser_path = shutil.which("chromium") or shutil.which("chromium-browser")
-    with TemporaryDirectory() as folder, sync_playwright() as driver:
-        page_path = shown.save(Path(folder, "page.html"))
+    with sync_playwright() as driver:
         browser = driver.chromium.launch(executable_path=browser_path, args=[*ARGUMENTS])
-        page = browser.new_page(viewport={"width": 1200, "height": 740})
-        page.goto(page_path.as_uri(), timeout=120_000)
+        page = browser.new_page(viewport={"width": size[0], "height": size[1]})
+        page.goto(address, timeout=120_000)
         page.evaluate(f"window.terrain.then(async (p) => {{ {show} }})")
         page.wait_for_timeout(2000)
         page.screenshot(path=path, timeout=120_000)

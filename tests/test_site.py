@@ -1,5 +1,6 @@
 """The site of the documentation: every page in its navigation, no link without an end."""
 
+import itertools
 import json
 import re
 import sys
@@ -10,7 +11,9 @@ from urllib.parse import unquote, urlsplit
 import click
 import pytest
 from support.blocks import ROOT, list_pages, name_page, read_blocks, remove_code
+from support.pages import open_served
 from support.processes import run
+from support.validators import find_violations
 
 import tinsmith as ts
 from tinsmith.cli import main
@@ -173,6 +176,13 @@ def test_notebooks_are_small_and_have_run(path):
 # ------------------------------------------------------------------------------------ the site
 
 
+KINDS_OF_PAGES = (
+    *("docs/index.html", "docs/many-files.html", "docs/rasters.html", "docs/at-home.html"),
+    *("docs/api/errors.html", "docs/notebooks/raster.html", "search.html"),
+)
+NESTED_LINK = re.compile(r"<a [^>]*>(?:(?!</a>).)*<a ", re.DOTALL)
+
+
 class Assets(HTMLParser):
     """What a page loads by itself: scripts, styles, pictures, frames."""
 
@@ -213,3 +223,14 @@ def test_the_site_is_built_without_a_warning_and_needs_no_network(tmp_path):
                 assert parts.fragment in pages[place].ids, f"{path}: {link}"
     assert "ts.contours" in (tmp_path / "site/docs/contours.html").read_text()
     assert "contours" in (tmp_path / "site/searchindex.js").read_text()
+    check_access(tmp_path / "site")
+
+
+def check_access(site):
+    """No page of each kind breaks a rule of WCAG 2.1 AA, and no link stands in a link."""
+    for path in site.rglob("*.html"):
+        assert not NESTED_LINK.search(path.read_text(encoding="utf-8")), path
+    for name, size in itertools.product(KINDS_OF_PAGES, ((1200, 800), (360, 640))):
+        viewport = dict(zip(("width", "height"), size, strict=True))
+        with open_served(site, name, ready="Promise.resolve(1)", viewport=viewport) as page:
+            assert find_violations(page) == [], (name, size)

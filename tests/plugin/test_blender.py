@@ -9,6 +9,7 @@ from contextlib import closing
 
 import numpy as np
 import pytest
+from PIL import Image
 from support.blender_addon import ADDON, drive_blender, load_part
 from support.qgis_plugin import pack_plug_in
 
@@ -234,6 +235,55 @@ def test_imports_in_blender(tmp_path):
     assert "choose the unit" in told["bare"]["imports"][0]["error"]
     assert told["bare"]["scene"] == {}
     assert (tmp_path / "picture.png").stat().st_size > 20_000
+
+
+@pytest.mark.proof
+@pytest.mark.timeout(400)
+@pytest.mark.filterwarnings("ignore::tinsmith.LossWarning")
+def test_blenders_own_importers(tmp_path):
+    """GLB, OBJ, PLY and STL by the importers of Blender: Z up, in place, whole, with the image."""
+    points = np.random.default_rng(8).random((200, 3)) * (90, 70, 12)
+    tin = ts.triangulate(np.round(points, 3), crs=UTM, elevation_unit="m")
+    far = tin.replace(points=tin.points + CORNER)
+    image = tmp_path / "ortho.png"
+    Image.fromarray(np.full((64, 32, 3), 200, np.uint8)).save(image)
+    image.with_suffix(".pgw").write_text("3\n0\n0\n-1.2\n1.5\n70\n")
+    files = {
+        "glb": ts.write(tin, tmp_path / "a.glb", frame="local"),
+        "far.glb": ts.write(far, tmp_path / "far.glb", frame="local"),
+        "ortho.glb": ts.write(tin, tmp_path / "ortho.glb", frame="local", ortho=image),
+        "obj": ts.write(tin, tmp_path / "a.obj"),
+        "ortho.obj": ts.write(tin, tmp_path / "ortho.obj", ortho=image),
+        "ply": ts.write(tin, tmp_path / "a.ply"),
+        "stl": ts.write(tin, tmp_path / "a.stl"),
+    }
+    told = drive_blender(tmp_path, {"native": {key: str(path) for key, path in files.items()}})
+    for name, found in told["native"].items():
+        vertices = np.array(found["vertices"])
+        if "glb" in name:  # about its middle, in whole metres
+            assert np.abs(vertices.min(axis=0) + vertices.max(axis=0)).max() < 2, name
+        if name not in ("obj", "ortho.obj", "ply"):  # STL from its corner
+            vertices += tin.points.min(axis=0) - vertices.min(axis=0)
+        check_native(name, found, vertices, tin)
+
+
+def check_native(name, found, vertices, tin):
+    assert found["least_area"] > 0, name
+    assert not found["is_changed"], name
+    assert found["normals_up"] == len(tin.triangles), name
+    assert len(vertices) == len(tin.points), name
+    nearest = np.linalg.norm(vertices[:, None] - tin.points, axis=2)
+    order = nearest.argmin(axis=1)
+    assert sorted(order) == list(range(len(tin.points))), name
+    assert nearest.min(axis=1).max() < 1e-4, name
+    same = {frozenset(corners) for corners in tin.triangles.tolist()}
+    assert {frozenset(order[corners]) for corners in found["triangles"]} == same, name
+    if "ortho" not in name:
+        return
+    assert found["images"] == [[32, 64]], name
+    uv, at = np.array(found["uv"]), tin.points[order[found["corners"]]]
+    np.testing.assert_allclose(uv[:, 0], (at[:, 0] - 0) / 96, atol=1e-3, err_msg=name)
+    np.testing.assert_allclose(1 - uv[:, 1], (70.6 - at[:, 1]) / 76.8, atol=1e-3, err_msg=name)
 
 
 def check_surface(objects, tin):

@@ -10,6 +10,9 @@ import sys
 from pathlib import Path
 
 import bpy
+import numpy as np
+
+np.bool = bool  # Debian's Blender 3.4 imports glTF by it, and its NumPy has it no more
 
 
 def install(path):
@@ -21,6 +24,54 @@ def install(path):
     else:
         bpy.ops.preferences.addon_install(filepath=path)
         bpy.ops.preferences.addon_enable(module="tinsmith")
+
+
+NATIVE = {
+    ".glb": ("import_scene.gltf",),
+    ".obj": ("wm.obj_import",),
+    ".ply": ("wm.ply_import", "import_mesh.ply"),
+    ".stl": ("wm.stl_import", "import_mesh.stl"),
+}
+"""Blender's own importers, the newer ones first."""
+
+Z_UP = {"forward_axis": "Y", "up_axis": "Z"}
+"""What docs/meshes.md says to choose: OBJ names no axis, and Blender takes Y to be up."""
+
+
+def import_natively(path):
+    """Import a file by Blender's own importer, and tell the mesh that came, in the world."""
+    bpy.ops.scene.new(type="NEW")
+    for name in NATIVE[Path(path).suffix]:
+        group, operator = name.split(".")
+        run = getattr(getattr(bpy.ops, group), operator)
+        try:
+            run.get_rna_type()
+        except KeyError:
+            continue
+        run(filepath=path, **(Z_UP if operator == "obj_import" else {}))
+        break
+    (one,) = [one for one in bpy.context.scene.objects if one.type == "MESH"]
+    mesh = one.data
+    images = [
+        [node.image.size[0], node.image.size[1]]
+        for material in mesh.materials
+        if material is not None and material.use_nodes
+        for node in material.node_tree.nodes
+        if node.type == "TEX_IMAGE" and node.image is not None
+    ]
+    told = {
+        "vertices": [list(one.matrix_world @ vertex.co) for vertex in mesh.vertices],
+        "triangles": [list(face.vertices) for face in mesh.polygons],
+        "least_area": min(face.area for face in mesh.polygons),
+        "normals_up": sum((one.matrix_world.to_3x3() @ f.normal).z > 0 for f in mesh.polygons),
+        "images": images,
+        "uv": [list(item.uv) for layer in mesh.uv_layers for item in layer.data],
+        "corners": [loop.vertex_index for loop in mesh.loops],
+        "colors": [one.name for one in mesh.color_attributes],
+        "materials": len(mesh.materials),
+    }
+    told["is_changed"] = mesh.validate()
+    return told
 
 
 def run_job(job):
@@ -106,7 +157,9 @@ def main():
     packed, jobs, answers = sys.argv[sys.argv.index("--") + 1 :]
     install(packed)
     wanted = json.loads(Path(jobs).read_text())
+    natively = {name: import_natively(path) for name, path in wanted.pop("native", {}).items()}
     told = {name: run_job(job) for name, job in wanted.items()}
+    told["native"] = natively
     bpy.ops.preferences.addon_disable(module=find_module())
     told["left"] = hasattr(bpy.types, "IMPORT_SCENE_OT_tinsmith")
     told["version"] = list(bpy.app.version)

@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from support.pages import open_page
+from support.validators import find_violations
 
 import tinsmith as ts
 
@@ -195,3 +196,18 @@ def test_a_file_is_taken_drawn_and_saved(path, tmp_path):
     tin = ts.read(tmp_path / "site.ply")
     assert tin.points.tobytes() == ts.triangulate(rows).points.tobytes()
     assert (tmp_path / "page.png").stat().st_size > 50_000
+
+
+@pytest.mark.parametrize("size", [(1200, 800), (360, 640)])
+def test_axe_core_finds_nothing(path, tmp_path, size):
+    """No rule of WCAG 2.1, level A or AA, is broken: empty, with a TIN, with a refusal."""
+    viewport = dict(zip(("width", "height"), size, strict=True))
+    with open_page(path, webgl=False, ready="window.tin.ready", viewport=viewport) as page:
+        assert find_violations(page) == []
+        for text, words in (("x,y,z\n" + SQUARE, "2 triangles"), ("", "empty")):
+            path_of_table = tmp_path / f"{len(text)}.csv"
+            path_of_table.write_text(text)
+            page.set_input_files("#file", path_of_table)
+            page.get_by_text(words).wait_for()
+            assert find_violations(page) == []
+        assert page.evaluate("document.documentElement.scrollWidth") <= size[0]

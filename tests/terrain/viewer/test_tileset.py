@@ -308,6 +308,39 @@ def test_memory_has_an_end(tmp_path):
 
 
 @pytest.mark.slow
+def test_thousands_of_tiles_without_a_coarser_one_keep_to_the_memory(tmp_path):
+    """As of many makers: a root without content, and all others below it."""
+    across, width = 50, 256.0 / 50
+    places = [(column * width, row * width) for column in range(across) for row in range(across)]
+    children = [
+        make_tile((x, y), (x + width, y + width), 0.0, uri=f"tiles/{k}.glb")
+        for k, (x, y) in enumerate(places)
+    ]
+    contents = {
+        f"tiles/{k}.glb": make_square_glb((x, y), (x + width, y + width), cells=1)
+        for k, (x, y) in enumerate(places)
+    }
+    root = make_tile((0, 0), (256, 256), BIG, children=children)
+    write_tileset(tmp_path, root, contents)
+    with open_served(tmp_path, write_page(tmp_path, exaggeration=1.0)) as page:
+        run(page, "p.tileset.mostBytes = 100000; p.scene.look(180, 90);")
+        for _ in range(3):
+            settle(page)
+        kept, shown = run(page, "return [p.tileset.bytes, p.tileset.choice.shown.length];")
+        assert kept < 105_000
+        assert 100 < shown < 400
+        assert "not all of this view, which needs more than 0 MB" in page.inner_text("#tiles")
+        assert len(page.asked) < 500
+        run(page, "for (let k = 0; k < 20; k += 1) p.scene.zoom(1.15); p.scene.draw();")
+        for _ in range(3):
+            settle(page)
+        assert "not all" not in page.inner_text("#tiles")
+        wanted, shown = run(page, "return [p.tileset.choice.wanted.length, p.tileset.isFull];")
+        assert (wanted, shown) == (0, False)
+        assert run(page, "return p.tileset.bytes;") < 105_000
+
+
+@pytest.mark.slow
 @pytest.mark.parametrize("size", [(360, 640), (640, 360)])
 def test_on_a_phone_nothing_is_cut(terrain, size):
     from .test_page_phone import BOXES, CUT, TARGETS
@@ -501,6 +534,10 @@ FATAL = {
     ),
     "extension": (change(root=ROOT, extensionsRequired=["X_y"]), "needs the extension 'X_y'"),
     "implicit": (change(root=ROOT | {"implicitTiling": {}}), "has implicit tiling"),
+    "implicit, 1.0": (
+        change(root=ROOT | {"extensions": {"3DTILES_implicit_tiling": {}}}),
+        "has implicit tiling, which is not read",
+    ),
     "no error": (
         change(root={k: v for k, v in ROOT.items() if k != "geometricError"}),
         "tileset.json: root has no 'geometricError' of 0 or more.",
@@ -545,6 +582,17 @@ FAILING = {
     "meshopt": (
         square(more={"extensionsRequired": ["EXT_meshopt_compression"]}),
         "1/0/0.glb is compressed by meshopt, which is not read",
+    ),
+    "points": (
+        b"pnts" + bytes(24),
+        "1/0/0.glb is a cloud of points (pnts): contents in GLB and b3dm",
+    ),
+    "instances": (b"i3dm" + bytes(28), "1/0/0.glb is models put at several places (i3dm): "),
+    "composite": (b"cmpt" + bytes(12), "1/0/0.glb is a composite of several contents (cmpt): "),
+    "subtree": (b"subt" + bytes(20), "1/0/0.glb is a subtree of implicit tiling: "),
+    "glTF in JSON": (
+        b'{"asset": {"version": "2.0"}, "scenes": [], "buffers": [{"uri": "a.bin"}]}',
+        "1/0/0.glb is glTF in JSON: contents in GLB and b3dm are shown.",
     ),
     "numbers": (NAN, "1/0/0.glb is damaged: it has coordinates that are no numbers."),
     "corners": (

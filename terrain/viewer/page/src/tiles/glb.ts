@@ -13,6 +13,13 @@ export interface Part {
 }
 
 const [GLTF, B3DM] = [0x46546c67, 0x6d643362];
+/** Contents of 3D Tiles that hold no triangles, or not by themselves. */
+const OTHERS: Record<number, string> = {
+  0x73746e70: "a cloud of points (pnts)",
+  0x6d643369: "models put at several places (i3dm)",
+  0x74706d63: "a composite of several contents (cmpt)",
+  0x74627573: "a subtree of implicit tiling",
+};
 const [JSON_CHUNK, BINARY_CHUNK] = [0x4e4f534a, 0x004e4942];
 const B3DM_HEADER = 28;
 const [TRIANGLES, STRIP, FAN] = [4, 5, 6];
@@ -37,7 +44,7 @@ export function readGlb(bytes: ArrayBuffer, name: string): Part[] {
   const view = new DataView(bytes);
   const magic = bytes.byteLength >= 12 ? view.getUint32(0, true) : 0;
   if (magic === B3DM) return readB3dm(bytes, view, name);
-  if (magic !== GLTF) throw new TilesetError(`${name} is no GLB: contents of other kinds are not shown.`);
+  if (magic !== GLTF) throw new TilesetError(`${name} is ${OTHERS[magic] ?? "no GLB"}: contents in GLB and b3dm are shown.`);
   if (view.getUint32(4, true) !== 2) throw new TilesetError(`${name} is glTF ${view.getUint32(4, true)}: 2 is read.`);
   const { document, binary } = splitChunks(bytes, view, name);
   return new Document(document, binary, name).read();

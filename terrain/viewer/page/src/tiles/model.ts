@@ -18,8 +18,12 @@ import { choose, type Choice } from "./traversal";
 
 /** Pixels by which what is shown may be off. */
 const MOST_ERROR = 3;
+/** Of a tile that is exact, metres: far below a pixel. */
+const LEAST_ERROR = 1e-9;
 /** Requests at a time. */
 const MOST_REQUESTS = 6;
+/** Tiles whose elevations tell the range of all at the start: of a level with more, so many spread over it. */
+const MOST_FIRST = 60;
 /** Bytes of tiles that are kept, on a small screen and on another. */
 const MOST_BYTES = [96e6, 384e6];
 /** By how much coarser tiles are taken when those in view need more, and how far the view has to
@@ -108,6 +112,8 @@ export class TilesetModel implements Model {
   /** Bytes of all tiles that are kept, and how many at most. */
   bytes = 0;
   mostBytes: number;
+  /** Whether the view needs more than is kept, and there are no coarser tiles: some are left out. */
+  isFull = false;
   /** Called when other tiles are shown, and when something could not be read. */
   changed: () => void = () => undefined;
   failed: () => void = () => undefined;
@@ -143,7 +149,7 @@ export class TilesetModel implements Model {
   async begin(): Promise<number[]> {
     let level = [this.root];
     while (level.length > 0) {
-      await Promise.all(level.filter(({ contents }) => contents.length > 0).map((tile) => this.load(tile)));
+      await this.loadSome(level.filter(({ contents }) => contents.length > 0));
       const heights: number[] = [];
       for (const { models } of this.loaded.values())
         for (const { surface } of models)
@@ -152,6 +158,14 @@ export class TilesetModel implements Model {
       level = level.flatMap(({ children }) => children);
     }
     throw new TilesetError(this.failures[0] ?? `${quote(this.source.root)} has no triangles to show.`);
+  }
+
+  /** Read tiles of a level, spread over it, a few at a time, as long as there is memory. */
+  private async loadSome(level: Tile[]): Promise<void> {
+    const step = Math.max(1, level.length / MOST_FIRST);
+    const some = Array.from({ length: Math.min(level.length, MOST_FIRST) }, (_, k) => level[Math.floor(k * step)]);
+    for (let k = 0; k < some.length && this.bytes <= this.mostBytes; k += MOST_REQUESTS)
+      await Promise.all(some.slice(k, k + MOST_REQUESTS).map((tile) => this.load(tile)));
   }
 
   /** Follow the view of a scene. */
@@ -179,14 +193,15 @@ export class TilesetModel implements Model {
       box.min.set(tile.low[0], tile.low[1], tile.low[2] * scene.lift);
       box.max.set(tile.high[0], tile.high[1], tile.high[2] * scene.lift);
       if (!frustum.intersectsBox(box)) return null;
-      // Heights are exaggerated, and so is what they are off by.
-      return (tile.error * Math.max(1, scene.lift) * perDistance) / box.distanceToPoint(eye);
+      // Heights are exaggerated, and so is what they are off by. Of exact tiles the nearest come first.
+      return (Math.max(tile.error, LEAST_ERROR) * Math.max(1, scene.lift) * perDistance) / box.distanceToPoint(eye);
     };
     this.choice = choose(this.root, measure, MOST_ERROR * this.strain);
     for (const tile of this.choice.used) tile.used = this.round;
     this.show(this.choice.shown);
-    this.request(this.choice.wanted);
     this.forget();
+    if (this.isFull) this.choice.wanted = [];
+    this.request(this.choice.wanted);
     if (this.isSettled) for (const act of this.waiting.splice(0)) act();
   }
 
@@ -323,6 +338,7 @@ export class TilesetModel implements Model {
 
   /** Let go of what has not been of use for longest, while there is more than is kept. */
   private forget(): void {
+    this.isFull = false;
     if (this.bytes <= this.mostBytes) return;
     const old = [...this.loaded.keys()].filter((tile) => tile.used < this.round).sort((a, b) => a.used - b.used);
     for (const tile of old) {
@@ -332,7 +348,12 @@ export class TilesetModel implements Model {
       this.bytes -= tile.bytes;
       [tile.bytes, tile.state] = [0, "none"];
     }
-    if (this.bytes <= this.mostBytes || this.choice.shown.length < 2) return;
+    const { shown, wanted } = this.choice;
+    if (this.bytes <= this.mostBytes || (shown.length < 2 && wanted.length === 0)) return;
+    if (!shown.some(hasCoarser)) {
+      this.isFull = wanted.length > 0;
+      return;
+    }
     // All of it is in view: coarser tiles have to do.
     this.strain *= COARSER;
     this.strainedAt = this.scene!.camera.position.clone();
@@ -379,6 +400,13 @@ export class TilesetModel implements Model {
 
 export function formatError(error: number): string {
   return `${Number(error.toPrecision(2))} m`;
+}
+
+/** Whether a tile has one above it that can stand in its place. */
+function hasCoarser({ parent }: Tile): boolean {
+  for (let one = parent; one !== null; one = one.parent)
+    if (one.isReplaced && one.contents.length > 0 && one.state !== "failed" && one.state !== "empty") return true;
+  return false;
 }
 
 function isJson(bytes: ArrayBuffer): boolean {

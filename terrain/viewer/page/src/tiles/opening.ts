@@ -112,7 +112,9 @@ export function showTileset(model: TilesetModel, scene: TerrainScene): void {
   let isTold = false;
   scene.drawn.push(() => {
     const tiles = model.surface.parts.length;
-    const coming = model.isSettled ? "" : ", finer ones are coming";
+    const coming = model.isFull
+      ? `, not all of this view, which needs more than ${Math.round(model.mostBytes / 1e6)} MB: come nearer to see the others`
+      : model.isSettled ? "" : ", finer ones are coming";
     const words = `${tiles === 1 ? "1 tile" : `${tiles} tiles`}, ${model.triangleCount.toLocaleString("en")} triangles, geometric error up to ${formatError(model.error)}${coming}`;
     if (state.textContent !== words) state.textContent = words;
     if (isTold || !model.isSettled) return;

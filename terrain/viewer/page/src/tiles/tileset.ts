@@ -57,6 +57,8 @@ export function readHead(text: string, name: string): Head {
     throw new TilesetError(`${name} is no tileset: it is not JSON.`);
   }
   const version: unknown = json?.asset?.version;
+  if (version === "2.0" && json.root === undefined && (json.meshes ?? json.nodes ?? json.scenes) !== undefined)
+    throw new TilesetError(`${name} is glTF in JSON: contents in GLB and b3dm are shown.`);
   if (typeof version !== "string" || typeof json.root !== "object" || json.root === null)
     throw new TilesetError(`${name} is no tileset of 3D Tiles: it has no 'asset' with a version, or no 'root'.`);
   if (!VERSIONS.includes(version))
@@ -176,7 +178,7 @@ export function makeTiles({ json }: Head, name: string, mapping: Mapping, above:
 
 function makeTile(entry: Json, parent: Tile | null, name: string, mapping: Mapping, where: string): Tile {
   if (typeof entry !== "object" || entry === null) throw new TilesetError(`${where} is no tile.`);
-  if (entry.implicitTiling !== undefined)
+  if ((entry.implicitTiling ?? entry.extensions?.["3DTILES_implicit_tiling"]) !== undefined)
     throw new TilesetError(`${where} has implicit tiling, which is not read: write the tileset with its tiles named.`);
   const error: unknown = entry.geometricError;
   if (typeof error !== "number" || !(error >= 0)) throw new TilesetError(`${where} has no 'geometricError' of 0 or more.`);
