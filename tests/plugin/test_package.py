@@ -16,6 +16,7 @@ from support.qgis_plugin import PLUGIN, ROOT, pack_plug_in
 
 import tinsmith
 from tinsmith.cli import main
+from tinsmith.cli.command_list import SUMMARIES
 from tinsmith.terrain.drawing.palette import interpolate_tints, write_hex
 
 PACKAGE = PLUGIN / "tinsmith"
@@ -85,6 +86,21 @@ def test_icons_are_drawings_and_all_are_used():
         names.add(path.stem)
     named = re.findall(r'(?:verb = |return )"([a-z]+)"', read_algorithms())
     assert names == {*named, "tinsmith"}
+
+
+NO_ALGORITHM = {
+    "info": "the report of 'check' and 'inspect'", "view": "a window of its own",
+    "compare": "about algorithms, not data", "edit": "a script", "formats": "no data",
+    "completion": "no data", "hillshade": "a renderer of QGIS", "alignment": "tables of a shell",
+    "diff": "not offered yet", "drape": "not offered yet", "interpolate": "not offered yet",
+}  # fmt: skip
+"""Commands that the plug-in leaves out, and why."""
+
+
+def test_each_command_is_an_algorithm_or_left_out_for_a_reason():
+    offered = set(re.findall(r'verb = "([a-z]+)"', read_algorithms()))
+    assert offered | set(NO_ALGORITHM) == set(SUMMARIES)
+    assert not offered & set(NO_ALGORITHM)
 
 
 def read_algorithms():

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import base64
 import io
+import itertools
 import re
 
 import numpy as np
@@ -328,3 +329,31 @@ def test_the_picture_is_offered_as_a_file(page):
     with page.expect_download() as told:
         page.click("#picture")
     assert told.value.suggested_filename == "Terrain surface.png"
+
+
+# ------------------------------------------------------------------ on paper and for the hostile
+
+
+def test_the_terrain_is_printed_without_the_controls(saved, tmp_path):
+    """What WebGL has drawn is gone on paper: a picture stands in its place."""
+    with open_page(saved) as page:
+        page.evaluate("window.dispatchEvent(new Event('beforeprint'))")
+        page.emulate_media(media="print")
+        assert page.is_hidden("#side")
+        assert page.is_hidden("#view")
+        colors = page.evaluate("""() => { const c = document.getElementById("printed");
+          const pixels = c.getContext("2d").getImageData(0, 0, c.width, c.height).data;
+          return new Set(new Uint32Array(pixels.buffer)).size; }""")
+        assert colors > 500
+        page.evaluate("window.dispatchEvent(new Event('afterprint'))")
+        assert page.locator("#printed").count() == 0
+
+
+def test_long_elevations_stand_beside_each_other(tmp_path):
+    points = np.random.default_rng(1).random((60, 3)) * (100, 100, 5) + (0, 0, 1e6)
+    path = ts.preview(ts.triangulate(points)).save(tmp_path / "a.html")
+    with open_page(path) as page:
+        boxes = page.evaluate("""() => [...document.querySelectorAll("#ticks span")].map((e) => {
+          const b = e.getBoundingClientRect(); return [b.left, b.right]; })""")
+        assert all(a[1] + 4 < b[0] for a, b in itertools.pairwise(boxes))
+        assert re.match(r"Elevations from 1\d+\.\d+ to 1\d+\.\d+; ", page.text_content("#extent"))

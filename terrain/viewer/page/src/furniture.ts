@@ -23,6 +23,8 @@ export class Furniture {
   ) {
     scene.drawn.push(() => this.annotate());
     find<HTMLElement>("picture").addEventListener("click", () => this.savePicture());
+    window.addEventListener("beforeprint", () => this.preparePrint());
+    window.addEventListener("afterprint", () => document.getElementById("printed")?.remove());
     new ResizeObserver(() => this.resize()).observe(scene.canvas);
     this.resize();
   }
@@ -58,8 +60,20 @@ export class Furniture {
     offerFile(this.payload.title, ".png", this.takePicture());
   }
 
+  /** Put a picture in the place of the view: what WebGL has drawn is gone when a page is printed. */
+  private preparePrint(): void {
+    document.getElementById("printed")?.remove();
+    const picture = this.drawPicture();
+    picture.id = "printed";
+    this.scene.canvas.parentElement!.append(picture);
+  }
+
   /** Return the present view with its annotations as a PNG in a data URL. */
   takePicture(): string {
+    return this.drawPicture().toDataURL("image/png");
+  }
+
+  private drawPicture(): HTMLCanvasElement {
     this.scene.draw();
     const canvas = document.createElement("canvas");
     [canvas.width, canvas.height] = [this.scene.canvas.width, this.scene.canvas.height];
@@ -77,6 +91,6 @@ export class Furniture {
     pen.fillText(`${this.bar.querySelector("span")!.textContent ?? ""}, ${this.payload.crs}`, 16, this.scene.canvas.clientHeight - 32);
     if (!this.legend.box.hidden) drawLegend(pen, this.legend.box, this.scene.canvas);
     drawNorth(pen, this.scene.canvas.clientWidth - 40, 40, this.scene.heading);
-    return canvas.toDataURL("image/png");
+    return canvas;
   }
 }

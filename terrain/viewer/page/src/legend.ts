@@ -5,6 +5,9 @@ import { type Tint, TINTS } from "./material";
 import type { Payload } from "./payload";
 import type { TerrainScene } from "./scene";
 
+/** Letters of the ticks together that fit below the ramp. */
+const MOST_LETTERS = 30;
+
 const TITLES: Record<Tint, string> = {
   elevation: "Elevation",
   slope: "Slope",
@@ -87,6 +90,8 @@ export class Legend {
     find<HTMLElement>("ramp").style.background =
       `linear-gradient(to right, ${this.payload.ramps[shown].join(", ")})`;
     find<HTMLElement>("ramp").dataset.colors = this.payload.ramps[shown].join(" ");
-    find<HTMLElement>("ticks").replaceChildren(...ticks.map((text) => makeText("span", text)));
+    // Long numbers have no room beside each other.
+    const shownTicks = ticks.join(" ").length > MOST_LETTERS ? [ticks[0], ticks[ticks.length - 1]] : ticks;
+    find<HTMLElement>("ticks").replaceChildren(...shownTicks.map((text) => makeText("span", text)));
   }
 }

@@ -143,7 +143,7 @@ function readNumbers(given: URLSearchParams, key: string, count?: number): numbe
   const text = given.get(key) ?? "";
   const numbers = text === "" ? [] : text.split(",").map((part) => (part.trim() === "" ? NaN : Number(part)));
   if (!numbers.every(Number.isFinite) || (count !== undefined && numbers.length !== count))
-    throw new Unreadable(`'${key}' is '${text.slice(0, 40)}', and must be ${count ?? "some"} numbers with commas.`);
+    throw new Unreadable(`'${key}' is '${text.slice(0, 40)}', and must be ${count === 1 ? "a number" : `${count ?? "some"} numbers with commas`}.`);
   return numbers;
 }
 

@@ -147,12 +147,12 @@ class Page {
 }
 
 /** Describe the surfaces to those who do not see them. */
-function describeExtent({ units, origin, elevationName }: Payload, scene: TerrainScene): void {
-  const [low, high] = scene.elevations.map((z) => Number((z + origin[2]).toFixed(2)));
+function describeExtent({ units, origin, elevationName, decimals }: Payload, scene: TerrainScene): void {
+  const [low, high] = scene.elevations.map((z) => Number((z + origin[2]).toFixed(Math.max(2, decimals[1]))));
   const [width, height] = scene.extent.map((one) => Number(one.toPrecision(4)));
   find<HTMLElement>("extent").textContent =
-    `${elevationName}s from ${low} to ${high} ${units.elevation}; ` +
-    `${width} ${units.horizontal} from west to east, ${height} ${units.horizontal} from south to north.`;
+    `${elevationName}s from ${low} to ${`${high} ${units.elevation}`.trim()}; ` +
+    `${`${width} ${units.horizontal}`.trim()} from west to east, ${`${height} ${units.horizontal}`.trim()} from south to north.`;
 }
 
 /** Show the terrain as a flat picture, and say why. */
