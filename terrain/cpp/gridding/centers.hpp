@@ -109,7 +109,8 @@ class CenterScan {
     }
     const double largest = std::max({std::fabs(grid.x[0]), std::fabs(grid.x[grid.columns - 1]),
                                      std::fabs(grid.y[0]), std::fabs(grid.y[grid.rows - 1])});
-    slack_ = 1e-9 + 32.0 * std::numeric_limits<double>::epsilon() * largest / std::min(grid.width, grid.height);
+    slack_ = 1e-9 + 32.0 * std::numeric_limits<double>::epsilon() * largest /
+                        std::min(grid.width, grid.height);
   }
 
   // A side of a triangle that is not level, from its southern end.

@@ -28,8 +28,8 @@ using CellSize = std::pair<double, double>;  // width and height
 
 inline CellGrid grid_of(const GivenValues& x, const GivenValues& y, const CellSize& size) {
   if (x.shape(0) == 0 || y.shape(0) == 0) throw std::invalid_argument("a grid has cells");
-  return {x.data(), y.data(), row_count(x.shape(0)), row_count(y.shape(0)), size.first,
-          size.second};
+  return {x.data(),   y.data(),   row_count(x.shape(0)), row_count(y.shape(0)),
+          size.first, size.second};
 }
 
 template <typename Draw>
