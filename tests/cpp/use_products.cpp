@@ -187,7 +187,7 @@ void draw_raster() {
   for (int i = 0; i <= 10; ++i) edges.push_back(10.0 * i);
   northings.assign(centers.rbegin(), centers.rend());
   north_edges.assign(edges.rbegin(), edges.rend());
-  const CellGrid grid{centers.data(), northings.data(), 10, 10, 10.0};
+  const CellGrid grid{centers.data(), northings.data(), 10, 10, 10.0, 10.0};
   std::vector<double> values(100), means(100);
   Team team(2, keep_going);
   const OrderedSurface ordered(plane.surface());
