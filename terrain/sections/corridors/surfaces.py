@@ -98,12 +98,11 @@ def build_surface(
     faces = faces[is_own(places)]
     if not len(faces):
         return None
-    try:
-        area = shapely.coverage_union_all(faces)
-    except shapely.GEOSException:  # faces lie over each other
+    area = _unite(faces)
+    if area is None:
         first = shapely.STRtree(lines).query(lines, predicate="crosses")[0]
         crossed = lines[first[0]] if len(first) else lines[0]
-        raise _explain_open(rays, road, shapely.get_coordinates(crossed)[0]) from None
+        raise _explain_open(rays, road, shapely.get_coordinates(crossed)[0])
     lost = mesh.find_lost(rays, area)
     if len(lost):
         raise _explain_open(rays, road, lost[0])
@@ -113,6 +112,17 @@ def build_surface(
     tin = triangulate(points[mesh.used], breaklines=breaks, **rings)
     outer = [points[list(pair)] for pair in mesh.list_outer(rays)]
     return CorridorSurface(tin, area, breaks, outer, mesh.find_fold(rays))
+
+
+def _unite(faces: Any) -> Any:
+    """Return faces as one area, None if they lie over each other."""
+    import shapely
+
+    try:
+        area = shapely.coverage_union_all(faces)
+    except shapely.GEOSException:
+        return None
+    return area if area.is_valid else None
 
 
 class _Vertices:

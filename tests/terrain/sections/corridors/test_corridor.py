@@ -11,6 +11,7 @@ from fuzz import corridors
 from fuzz.campaign import as_written
 
 import tinsmith as ts
+from tinsmith.terrain.sections.corridors import surfaces
 
 SIZE = 400.0
 LANE = ts.Part("lane", 3.5, -0.02, turns=True)
@@ -439,3 +440,13 @@ def test_steps_at_a_bend_that_are_thinner_than_coordinates_do_not_refuse_side_sl
     rng = np.random.default_rng([20, zlib.crc32(b"corridors"), 63])
     case = as_written(corridors.generate(rng))
     assert corridors.examine(case) == "cut off"
+
+
+def test_faces_that_lie_over_each_other_are_no_area():
+    """Not every union of them raises: at a ring of clothoids one had a hole that crossed itself.
+
+    The corridor was refused for "Hole 1", of which the user knows nothing.
+    """
+    faces = shapely.box([0, 2], 0, [2, 3], 2)
+    assert surfaces._unite(faces[:2]).area == 6.0
+    assert surfaces._unite(np.append(faces[:2], shapely.box(1, 1, 2.5, 3))) is None
