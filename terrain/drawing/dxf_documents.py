@@ -43,8 +43,8 @@ def set_paper(
     R12 has a place for the paper alone, and no units.
     """
     code = 0 if document.dxfversion == _R12 else document.header["$INSUNITS"]
-    is_known = unit and unit.metres and 0 < code <= _LAST_UNIT
-    mm = 1000.0 * unit.metres if is_known else 1.0
+    metres = None if unit is None else unit.metres
+    mm = 1000.0 * metres if metres and 0 < code <= _LAST_UNIT else 1.0
     scale = mm_per_unit / mm
     paper = document.active_layout()
     paper.dxf.limmin, paper.dxf.limmax = (0.0, 0.0), (size[0] / mm, size[1] / mm)
