@@ -1,16 +1,13 @@
-"""Inputs of algorithms: layers and files become files that the command reads."""
+"""Inputs of algorithms: layers and files become arguments of the command."""
 
 from __future__ import annotations
 
-import re
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from qgis.core import (
-    QgsCoordinateTransformContext,
     QgsFeature,
-    QgsFeatureRequest,
     QgsGeometry,
     QgsMeshLayer,
     QgsProcessing,
@@ -24,80 +21,17 @@ from qgis.core import (
     QgsProviderRegistry,
     QgsRasterLayer,
     QgsReferencedPointXY,
-    QgsVectorFileWriter,
     QgsVectorLayer,
     QgsWkbTypes,
 )
 
+from .files import Files, name_coordinates
 from .options import describe, name_crs
-from .process import CANCELLED
+from .results import PlaceColumns
 
 POINTS, POLYGONS = QgsProcessing.TypeVectorPoint, QgsProcessing.TypeVectorPolygon
 ANY_FILE = "All files (*)"
 """With names without a dot, too."""
-_MOST_LETTERS = 40
-"""Of a layer's name in that of a temporary file."""
-
-
-@dataclass
-class Files:
-    """Temporary files of one run, and the layers that they stand for.
-
-    Attributes
-    ----------
-    folder : Path
-        Removed at the end of the run.
-    names : dict of str to str
-        Names of the layers by path, for messages.
-    """
-
-    folder: Path
-    names: dict[str, str] = field(default_factory=dict)
-
-    def choose_path(self, name: str, suffix: str) -> Path:
-        """Return a new path, which is called like a layer."""
-        stem = re.sub(r"[^\w -]", "_", name).strip()[:_MOST_LETTERS] or "layer"
-        folder = self.folder / str(len(self.names) + 1)
-        folder.mkdir()
-        path = folder / f"{stem}{suffix}"
-        self.names[str(path)] = name
-        return path
-
-    def write_source(self, source: Any, feedback: Any) -> Path:
-        """Write the features of a source, as they are chosen, with all coordinates and columns.
-
-        A GeoPackage; without a CRS a FlatGeobuf, since GDAL gives a GeoPackage degrees then.
-        """
-        has_crs = source.sourceCrs().isValid()
-        path = self.choose_path(source.sourceName(), ".gpkg" if has_crs else ".fgb")
-        in_order = QgsFeatureRequest().addOrderBy("$id")  # a selection has none
-        layer = source.materialize(in_order, feedback)
-        how = _choose_writing(layer, path.stem, has_crs)
-        how.feedback = feedback
-        context = QgsCoordinateTransformContext()
-        code, said, *_ = QgsVectorFileWriter.writeAsVectorFormatV3(layer, str(path), context, how)
-        if feedback.isCanceled():
-            raise QgsProcessingException(CANCELLED)
-        written = QgsVectorLayer(str(path), "written", "ogr").featureCount()
-        if code != QgsVectorFileWriter.NoError or written != layer.featureCount():
-            raise QgsProcessingException(
-                f"The layer '{source.sourceName()}' cannot be written to a temporary file: "
-                f"{said or f'{written:,} of {layer.featureCount():,} features are there'}."
-            )
-        return path
-
-
-def _choose_writing(layer: Any, name: str, has_crs: bool) -> Any:
-    """Return how a layer is written: every column but numbers of rows, which may occur twice."""
-    how = QgsVectorFileWriter.SaveVectorOptions()
-    how.driverName = "GPKG" if has_crs else "FlatGeobuf"
-    how.layerName = name
-    how.fileEncoding = "UTF-8"
-    how.layerOptions = [] if has_crs else ["SPATIAL_INDEX=NO"]  # which would change the order
-    columns = layer.fields().names()
-    how.attributes = [k for k, column in enumerate(columns) if column.lower() != "fid"]
-    how.skipAttributeCreation = not how.attributes
-    return how
 
 
 @dataclass(frozen=True)
@@ -314,6 +248,36 @@ class Lines:
             return []
         source = require_features(algorithm, parameters, self.name, context)
         return [f"{self.flag}={files.write_source(source, feedback)}"]
+
+
+@dataclass(frozen=True)
+class PointTable(Lines):
+    """A layer of points, which the command reads as a CSV file."""
+
+    kind: Any = POINTS
+
+    def list_arguments(
+        self, algorithm: Any, parameters: dict[str, Any], context: Any, files: Files, feedback: Any
+    ) -> list[str]:
+        """Return the options with the table and with the CRS of the layer, if one is given."""
+        place = self.find_place(algorithm, parameters, context)
+        if place is None:
+            return []
+        source = require_features(algorithm, parameters, self.name, context)
+        chosen = [f"{self.flag}-columns", place.x, place.y, f"{self.flag}-delimiter=,"]
+        if place.crs.isValid():
+            chosen.append(f"{self.flag}-crs={name_crs(place.crs)}")
+        return [f"{self.flag}={files.write_table(source, feedback)}", *chosen]
+
+    def find_place(
+        self, algorithm: Any, parameters: dict[str, Any], context: Any
+    ) -> PlaceColumns | None:
+        """Return the columns of coordinates that the table has, if a layer is given."""
+        if not parameters.get(self.name):
+            return None
+        source = require_features(algorithm, parameters, self.name, context)
+        x, y = name_coordinates(source)
+        return PlaceColumns(x, y, source.sourceCrs())
 
 
 @dataclass(frozen=True)

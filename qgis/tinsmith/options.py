@@ -10,6 +10,7 @@ from qgis.core import (
     QgsProcessingParameterCrs,
     QgsProcessingParameterDefinition,
     QgsProcessingParameterEnum,
+    QgsProcessingParameterFile,
     QgsProcessingParameterNumber,
     QgsProcessingParameterString,
 )
@@ -128,6 +129,20 @@ def crs(name: str, words: str, flag: str, help_text: str, advanced: bool = False
     def translate(algorithm: Any, parameters: dict[str, Any], context: Any) -> list[str]:
         chosen = algorithm.parameterAsCrs(parameters, name, context)
         return [f"{flag}={name_crs(chosen)}"] if chosen.isValid() else []
+
+    return Option(define, translate)
+
+
+def file(name: str, words: str, flag: str, help_text: str, kinds: str) -> Option:
+    """Return the option for a file of these kinds, which may be left out."""
+
+    def define() -> Any:
+        what = QgsProcessingParameterFile.File, "", None, True, kinds
+        return describe(QgsProcessingParameterFile(name, words, *what), help_text, flag)
+
+    def translate(algorithm: Any, parameters: dict[str, Any], context: Any) -> list[str]:
+        chosen = algorithm.parameterAsFile(parameters, name, context)
+        return [f"{flag}={chosen}"] if chosen else []
 
     return Option(define, translate)
 

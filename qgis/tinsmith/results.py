@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from osgeo import gdal
 from qgis.core import (
@@ -79,13 +79,32 @@ def style_on_loading(path: str, style: Callable[[Any], None], context: Any) -> N
         context.layerToLoadOnCompletionDetails(path).setPostProcessor(Styler(style))
 
 
-def load_file(path: str, name: str, output: str, context: Any, feedback: Any) -> None:
+class PlaceColumns(NamedTuple):
+    """Columns of a table that hold coordinates, and their CRS."""
+
+    x: str
+    y: str
+    crs: Any
+
+
+def load_file(
+    path: str,
+    output: str,
+    context: Any,
+    feedback: Any,
+    *,
+    name: str,
+    style: Callable[[Any], None] = style_mesh,
+    place: PlaceColumns | None = None,
+) -> None:
     """Have a file loaded that is no output layer of Processing: a mesh, a table, any other.
+
+    A mesh gets the style; a table is loaded as points by its columns of coordinates.
 
     Nothing is loaded where no project is open, or if QGIS has no layer for such a file.
     """
     project = context.project()
-    layer = None if project is None else open_layer(path, name)
+    layer = None if project is None else open_layer(path, name, place)
     if layer is None:
         return
     context.temporaryLayerStore().addMapLayer(layer)
@@ -93,17 +112,29 @@ def load_file(path: str, name: str, output: str, context: Any, feedback: Any) ->
     if isinstance(layer, QgsMeshLayer):
         if layer.dataProvider().edgeCount() > 0:
             feedback.pushWarning(_EDGES_ALONE)
-        details.setPostProcessor(Styler(style_mesh))
+        details.setPostProcessor(Styler(style))
     context.addLayerToLoadOnCompletion(layer.id(), details)
 
 
-def open_layer(path: str, name: str) -> Any:
+def open_layer(path: str, name: str, place: PlaceColumns | None = None) -> Any:
     """Return a file as a layer, or None if QGIS has none for it; libraries print nothing."""
     gdal.PushErrorHandler("CPLQuietErrorHandler")
     try:
+        if place is not None and Path(path).suffix.lower() in _TABLES:
+            return _open_points(path, name, place)
         return _open_layer(path, name)
     finally:
         gdal.PopErrorHandler()
+
+
+def _open_points(path: str, name: str, place: PlaceColumns) -> Any:
+    """Return a table as a layer of points, or None if QGIS cannot open it."""
+    how = QgsVectorLayer.LayerOptions()
+    how.skipCrsValidation = True  # else QGIS may ask for the CRS, which a table has not
+    columns = f"option:X_POSSIBLE_NAMES={place.x}|option:Y_POSSIBLE_NAMES={place.y}"
+    layer = QgsVectorLayer(f"{path}|{columns}", name, "ogr", how)
+    layer.setCrs(place.crs)
+    return layer if layer.isValid() else None
 
 
 def _open_layer(path: str, name: str) -> Any:

@@ -62,13 +62,25 @@ def make_elevation_ramp() -> Any:
 
 def style_mesh(layer: Any) -> None:
     """Color a mesh by elevation, with its edges."""
-    index = QgsMeshDatasetIndex(0, 0)
-    group = layer.datasetGroupMetadata(index)
+    group = layer.datasetGroupMetadata(QgsMeshDatasetIndex(0, 0))
+    _color_mesh(layer, _make_shader(group.minimum(), group.maximum(), make_elevation_ramp()))
+
+
+def style_difference(layer: Any) -> None:
+    """Color a mesh of differences from cut to fill, white where nothing has changed."""
+    group = layer.datasetGroupMetadata(QgsMeshDatasetIndex(0, 0))
+    reach = max(abs(group.minimum()), abs(group.maximum()))
+    ends = (QColor(_EARTHWORK[kind]) for kind in ("cut", "fill"))
+    ramp = QgsGradientColorRamp(*ends, False, [QgsGradientStop(0.5, QColor("white"))])
+    _color_mesh(layer, _make_shader(-reach, reach, ramp))
+
+
+def _color_mesh(layer: Any, shader: Any) -> None:
+    """Color a mesh by its elevations, with its edges."""
     settings = layer.rendererSettings()
     scalars = settings.scalarSettings(0)
-    low, high = group.minimum(), group.maximum()
-    scalars.setClassificationMinimumMaximum(low, high)
-    scalars.setColorRampShader(_make_shader(low, high, make_elevation_ramp()))
+    scalars.setClassificationMinimumMaximum(shader.minimumValue(), shader.maximumValue())
+    scalars.setColorRampShader(shader)
     settings.setScalarSettings(0, scalars)
     settings.setActiveScalarDatasetGroup(0)
     edges = settings.nativeMeshSettings()

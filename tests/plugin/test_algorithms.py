@@ -398,7 +398,7 @@ def compare_option(option, parameter, name):
     if parameter["type"] == "enum":
         if isinstance(option.type, Choice):
             # An option without a default has a first choice that leaves it out.
-            unset = {"as usual"} if known is None else set()
+            unset = {"as usual", "no elevation"} if known is None else set()
             chosen = set(parameter["choices"]) - unset
             assert sorted(option.type.choices) == sorted(chosen), (name, parameter)
             assert parameter["choices"][0] in {*unset, *option.type.choices}

@@ -92,7 +92,6 @@ NO_ALGORITHM = {
     "info": "the report of 'check' and 'inspect'", "view": "a window of its own",
     "compare": "about algorithms, not data", "edit": "a script", "formats": "no data",
     "completion": "no data", "hillshade": "a renderer of QGIS", "alignment": "tables of a shell",
-    "diff": "not offered yet", "drape": "not offered yet", "interpolate": "not offered yet",
 }  # fmt: skip
 """Commands that the plug-in leaves out, and why."""
 

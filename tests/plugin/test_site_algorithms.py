@@ -1,9 +1,12 @@
-"""Flow, sight, ground, grading, pasting and inspection in QGIS: results of the package itself."""
+"""Flow, sight, ground, grading, differences and the like in QGIS: results of the package itself."""
 
 from __future__ import annotations
 
+import csv
+
 import numpy as np
 import pytest
+import shapely
 from support import qgis_jobs as qgis
 from support.qgis_plugin import drive
 
@@ -22,6 +25,14 @@ SECTIONS = [
     [[x, 4024312.0, z + 3], [x, 4024304.0, z], [x, 4024300.0, z], [x, 4024293.0, z + 3]]
     for x, z in ((752745.0, 320.0), (752775.0, 319.0))
 ]
+ACROSS = [[752400.0, 4024260.0], [752760.0, 4024262.5]]
+"""A line that begins outside the surface."""
+STATIONS = [
+    [752740.123456789, 4024290.1, "a, b", 0.1 + 0.2, True, "2024-05-01"],
+    [752781.0, 4024261.7, 'the "old"\npeg', None, False, None],
+    [752400.0, 4024250.3, "beyond", 7.0, None, "1999-12-31"],
+]
+"""Easting, northing; columns named note, x, seen and day."""
 PATCH = [[752700.0, 4024240.0, 330.0], [752720.0, 4024240.0, 330.0], [752710.0, 4024260.0, 331.0]]
 
 
@@ -197,3 +208,170 @@ def check_earthwork(told, tin, folder):
     clipped = ts.clip(tin, [PAD])
     qgis.assert_same_tin(ts.read(folder / "part.ply"), clipped)
     assert qgis.take_layer(told["clipped"], "part")["faces"] == len(clipped.triangles)
+
+
+# ------------------------------------------------- differences, and elevations of a surface
+
+
+@pytest.mark.slow
+@pytest.mark.timeout(900)
+def test_differences_and_elevations_are_those_of_the_package(tmp_path):
+    tin, layers = make_site(tmp_path)
+    graded = ts.grade(tin, PAD, 327, cut_slope=2, fill_slope=3)
+    ts.write(graded, tmp_path / "design.ply")
+    rows = [[qgis.write_wkt("Point", [row[:2]]), row[2:]] for row in STATIONS]
+    columns = ["note:string", "X:double", "seen:boolean", "day:date"]
+    layers |= {
+        "design": {"kind": "mesh", "path": str(tmp_path / "design.ply")},
+        "across": qgis.make_layer(
+            "LineString", [[qgis.write_wkt("LineString", ACROSS), ["k"]]], columns=["name:string"]
+        ),
+        "stations": qgis.make_layer("Point", rows, columns=columns),
+        "taken": qgis.make_layer("Point", [[rows[0][0], [1.0]]], columns=["elevation:double"]),
+        "pairs": qgis.make_layer("MultiPoint", [["MultiPoint((1 2), (3 4))", []]]),
+        "empty": qgis.make_layer("Point", [[rows[0][0], []], ["Point EMPTY", []]]),
+    }
+    (tmp_path / "places.csv").write_text("id;lon;lat\n7;-84.2;36.3\n")
+    jobs = {
+        "difference": qgis.job("diff", BEFORE="ground", AFTER="design", LEVEL_OF_DETECTION=0.25,
+                               OUTPUT=tmp_path / "difference.ply", ZONES=tmp_path / "zones.gpkg",
+                               TABLE=tmp_path / "differs.csv", PICTURE=tmp_path / "map.png"),
+        "raised": qgis.job("diff", BEFORE="ground", AFTER="flat", AFTER_Z_FIELD="high",
+                           OUTPUT=tmp_path / "raised.nc"),
+        "draped": qgis.job("drape", INPUT="ground", FEATURES="pad", OUTPUT=tmp_path / "rim.gpkg"),
+        "inside": qgis.job("drape", INPUT="flat", INPUT_Z_FIELD="high", FEATURES="across",
+                           OUTSIDE="cut", OUTPUT=tmp_path / "inside.gpkg"),
+        "spots": qgis.job("drape", INPUT="ground", FEATURES="places",
+                          OUTPUT=tmp_path / "spots.gpkg"),
+        "smooth": qgis.job("interpolate", INPUT="ground", AT="stations", METHOD="natural",
+                           EXTRAPOLATE="nearest", OUTPUT=tmp_path / "smooth.csv"),
+        "chosen": qgis.job("interpolate", INPUT="flat", INPUT_Z_FIELD="high",
+                           AT={"selected": "flat"}, COLUMN="z_tin",
+                           OUTPUT=tmp_path / "chosen.csv"),
+        "degrees": qgis.job("interpolate", INPUT="ground", AT="places",
+                            OUTPUT=tmp_path / "degrees.csv"),
+        "file": qgis.job("interpolate", INPUT="ground", AT_FILE=tmp_path / "places.csv",
+                         AT_CRS="EPSG:4326", OUTPUT=tmp_path / "file.csv"),
+    }  # fmt: skip
+    refused = list_refused(tmp_path)
+    told = drive(tmp_path, layers, jobs | refused)
+    for words in refused:
+        assert words in (told.pop(words)["error"] or ""), words
+    assert not list(tmp_path.glob("no.*"))
+    qgis.require_done(told)
+    check_differences(told, tin, graded, tmp_path)
+    check_draped(told, tin, tmp_path)
+    check_elevations(told, tin, tmp_path)
+
+
+def list_refused(folder):
+    """Return jobs that are refused, by words of the sentence."""
+    nowhere = folder / "no.csv"
+    return {
+        "After: choose a layer or a file": qgis.job("diff", BEFORE="ground",
+                                                    OUTPUT=folder / "no.ply"),
+        "outside the surface": qgis.job("drape", INPUT="ground", FEATURES="across",
+                                        OUTPUT=folder / "no.gpkg"),
+        "Points: choose a layer or a file": qgis.job("interpolate", INPUT="ground",
+                                                     OUTPUT=nowhere),
+        "choose one of them": qgis.job("interpolate", INPUT="ground", AT="places",
+                                       AT_FILE=folder / "places.csv", OUTPUT=nowhere),
+        "whose CRS is taken": qgis.job("interpolate", INPUT="ground", AT="places",
+                                       AT_CRS="EPSG:4326", OUTPUT=nowhere),
+        "column 'elevation' already": qgis.job("interpolate", INPUT="ground", AT="taken",
+                                               OUTPUT=nowhere),
+        "of the layer 'pairs' has 2 points": qgis.job("interpolate", INPUT="ground", AT="pairs",
+                                                      OUTPUT=nowhere),
+        "of the layer 'empty' has no points": qgis.job("interpolate", INPUT="ground", AT="empty",
+                                                       OUTPUT=nowhere),
+    }  # fmt: skip
+
+
+def check_differences(told, tin, graded, folder):
+    wanted = ts.difference(tin, graded, level_of_detection=0.25)
+    qgis.assert_same_tin(ts.read(folder / "difference.ply"), wanted.tin)
+    outputs, statistics = told["difference"]["outputs"], wanted.statistics
+    assert [outputs[name] for name in ("CUT", "FILL")] == [wanted.cut, wanted.fill]
+    assert [outputs["MEAN"], outputs["RMS"]] == [statistics["mean"][0], statistics["rms"][0]]
+    assert outputs["TRIANGLES"] == len(wanted.tin.triangles)
+    volumes = ts.volume(tin, graded)
+    assert outputs["FILL"] == pytest.approx(volumes["fill"][0], rel=1e-9)
+    layer = qgis.take_layer(told["difference"], "difference")
+    reach = np.abs(wanted.tin.points[:, 2]).max()
+    assert layer["range"] == pytest.approx([-reach, reach], rel=1e-12)
+    values = np.array(list(map(float, layer["colors"])))
+    colors = list(layer["colors"].values())
+    assert values == pytest.approx([-reach, 0, reach], abs=1e-9)
+    assert colors == ["#c4533f", "#ffffff", "#3b77b0"]
+    zones = qgis.take_layer(told["difference"], "zones")
+    assert (zones["field"], zones["unclassified"]) == ("kind", 0)
+    again = ts.write(wanted.zones, folder / "wanted zones.gpkg")
+    assert qgis.read_layer(folder / "zones.gpkg") == qgis.read_layer(again)
+    with (folder / "differs.csv").open() as file:
+        (row,) = csv.DictReader(file)
+    assert len(row) == len(statistics.columns)
+    assert (folder / "map.png").read_bytes().startswith(b"\x89PNG")
+    raised = ts.read(folder / "raised.nc")
+    assert raised.points[:, 2] == pytest.approx(np.ones(len(raised.points)), abs=1e-9)
+
+
+def read_vertices(path):
+    return shapely.get_coordinates(shapely.from_wkb(qgis.read_layer(path)[1]), include_z=True)
+
+
+def check_draped(told, tin, folder):
+    for name, given, options in (
+        ("rim", ts.Features.of_polygons([*PAD, PAD[0]], [0, 5], [0, 1], crs=qgis.UTM), {}),
+        ("inside", ts.Features.of_lines(ACROSS, [0, 2], crs=qgis.UTM), {"outside": "cut"}),
+    ):
+        wanted = ts.drape(tin, given, **options).coordinates
+        found = read_vertices(folder / f"{name}.gpkg")
+        lift = np.array([0.0, 0.0, 1.0 if name == "inside" else 0.0])
+        np.testing.assert_allclose(found, wanted + lift, rtol=0, atol=1e-9)
+        assert len(found) > 4
+    columns, _, values = qgis.read_layer(folder / "inside.gpkg")
+    assert values[columns.index("name")] == ["k"]
+    layer = qgis.take_layer(told["inside"], "inside")
+    assert (layer["count"], layer["crs"]) == (1, qgis.UTM)
+    assert "Z" in layer["shapes"][0].partition("(")[0]
+    spots = read_vertices(folder / "spots.gpkg")
+    np.testing.assert_allclose(spots[:, :2], PLACES, atol=1e-5)
+    np.testing.assert_allclose(spots[:, 2], tin.interpolate(PLACES), atol=1e-4)
+
+
+def read_rows(path):
+    with path.open(encoding="utf-8", newline="") as file:
+        return list(csv.DictReader(file))
+
+
+def check_elevations(told, tin, folder):
+    at = np.array([row[:2] for row in STATIONS])
+    rows = read_rows(folder / "smooth.csv")
+    *names, elevation = rows[0]
+    assert names == ["x_2", "y", "note", "X", "seen", "day"]
+    assert elevation.partition(" (")[0] == "elevation"
+    wanted = tin.interpolate(at, method="natural", extrapolate="nearest")
+    np.testing.assert_array_equal([float(row[elevation]) for row in rows], wanted)
+    np.testing.assert_array_equal([[float(row["x_2"]), float(row["y"])] for row in rows], at)
+    assert [row["note"] for row in rows] == [row[2] for row in STATIONS]
+    assert [row["X"] for row in rows] == ["0.30000000000000004", "", "7.0"]
+    assert [row["seen"] for row in rows] == ["true", "false", ""]
+    assert [row["day"] for row in rows] == ["2024-05-01", "", "1999-12-31"]
+    layer = qgis.take_layer(told["smooth"], "smooth")
+    assert (layer["count"], layer["crs"]) == (3, qgis.UTM)
+    assert layer["shapes"][1] == "Point (752781 4024261.70000000018626451)"
+    assert told["smooth"]["outputs"]["COUNT"] == 3
+    assert told["smooth"]["outputs"]["OUTSIDE"] == 0
+    survey = qgis.read_survey().points[:300]
+    rows = read_rows(folder / "chosen.csv")
+    (column,) = [name for name in rows[0] if name.startswith("z_tin")]
+    found = [float(row[column] or "nan") for row in rows]
+    np.testing.assert_allclose(found, tin.interpolate(survey[:, :2]) + 1, atol=1e-9)
+    assert [int(row["fid"]) for row in rows] == list(range(300))
+    rows = read_rows(folder / "degrees.csv")
+    found = [float(row[list(row)[-1]]) for row in rows]
+    np.testing.assert_allclose(found, tin.interpolate(PLACES), atol=1e-4)
+    assert qgis.take_layer(told["degrees"], "degrees")["crs"] == "EPSG:4326"
+    (row,) = read_rows(folder / "file.csv")
+    assert list(row)[:3] == ["id", "lon", "lat"]
+    assert told["file"]["outputs"]["OUTSIDE"] == 1

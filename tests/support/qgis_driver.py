@@ -61,6 +61,9 @@ class Feedback(QgsProcessingFeedback):
         self.note("error", error)
 
 
+MOST_SHAPES = 3
+
+
 def make_layer(kind, crs, columns, features, name):
     """Return a layer in memory, of features as WKT with their attributes."""
     text = "&".join(f"field={column}" for column in columns)
@@ -150,6 +153,7 @@ def describe_layer(layer):
         renderer = layer.renderer()
         told["count"] = layer.featureCount()
         told["labels"] = layer.labelsEnabled()
+        told["shapes"] = [one.geometry().asWkt(17) for one in layer.getFeatures()][:MOST_SHAPES]
         told["renderer"] = renderer.type() if renderer else None
         if told["renderer"] == "singleSymbol":
             told["properties"] = describe_properties(renderer.symbol().symbolLayer(0))
@@ -169,7 +173,9 @@ def describe_layer(layer):
         scalars = layer.rendererSettings().scalarSettings(0)
         told["faces"] = layer.dataProvider().faceCount()
         told["range"] = [scalars.classificationMinimum(), scalars.classificationMaximum()]
-        told["ramp"] = len(scalars.colorRampShader().colorRampItemList())
+        rows = scalars.colorRampShader().colorRampItemList()
+        told["ramp"] = len(rows)
+        told["colors"] = {str(one.value): one.color.name() for one in rows}
         told["edges"] = layer.rendererSettings().nativeMeshSettings().isEnabled()
     else:
         renderer = layer.renderer()

@@ -6,6 +6,7 @@ from .build import BuildAlgorithm
 from .check import CheckAlgorithm
 from .contours import ContoursAlgorithm
 from .convert import ConvertAlgorithm
+from .drape import DrapeAlgorithm, InterpolateAlgorithm
 from .flow import FlowAlgorithm
 from .grade import CorridorAlgorithm, GradeAlgorithm, HydroflattenAlgorithm, RiverbedAlgorithm
 from .ground import GroundAlgorithm
@@ -14,12 +15,11 @@ from .install import InstallAlgorithm
 from .paste import ClipAlgorithm, CoregisterAlgorithm, MergeAlgorithm, PasteAlgorithm
 from .profile import PlanAlgorithm, ProfileAlgorithm
 from .raster import RasterAlgorithm
-from .refine import RefineAlgorithm
+from .refine import RefineAlgorithm, SimplifyAlgorithm
 from .sections import SectionsAlgorithm, StakeoutAlgorithm
 from .sight import SightAlgorithm
-from .simplify import SimplifyAlgorithm
 from .slope import SlopeAlgorithm
-from .volume import StorageAlgorithm, VolumeAlgorithm
+from .volume import DifferenceAlgorithm, StorageAlgorithm, VolumeAlgorithm
 
 __all__ = ["ALGORITHMS"]
 
@@ -30,7 +30,10 @@ ALGORITHMS = (
     ContoursAlgorithm,
     SlopeAlgorithm,
     ProfileAlgorithm,
+    DrapeAlgorithm,
+    InterpolateAlgorithm,
     VolumeAlgorithm,
+    DifferenceAlgorithm,
     SectionsAlgorithm,
     StakeoutAlgorithm,
     StorageAlgorithm,

@@ -6,6 +6,7 @@ import json
 import shlex
 import tempfile
 from collections.abc import Callable, Sequence
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -22,17 +23,20 @@ from qgis.core import (
 )
 
 from ..command import find_command
+from ..files import Files
 from ..icons import load_icon
-from ..inputs import Files, Found, Lines, Place, Surface
+from ..inputs import Found, Lines, Place, Surface
 from ..options import Option, describe
 from ..process import Failed, Speaker, run_program
 from ..results import (
+    PlaceColumns,
     find_unit,
     load_file,
     name_layer,
     rename_on_loading,
     style_on_loading,
 )
+from ..styles import style_mesh
 
 EXTRA = "EXTRA"
 LOAD = "LOAD"
@@ -179,7 +183,7 @@ class CommandAlgorithm(QgsProcessingAlgorithm):
         super().__init__()
         self.found: dict[str, Found | None] = {}
         self._fault: Exception | None = None
-        self._to_load: list[tuple[str, str, str]] = []
+        self._to_load: list[Callable[[Any, Any], None]] = []
 
     # ------------------------------------------------------------ what QGIS asks
 
@@ -346,14 +350,26 @@ class CommandAlgorithm(QgsProcessingAlgorithm):
 
     def postProcessAlgorithm(self, context: Any, feedback: Any) -> dict[str, Any]:
         """Load what Processing does not load itself, in the main thread."""
-        for made in self._to_load:
-            load_file(*made, context, feedback)
+        for load in self._to_load:
+            load(context, feedback)
         return {}
 
-    def load_later(self, run: Run, path: str, name: str) -> None:
-        """Have the output, a file, loaded once the run is over, if the user wants it."""
+    def load_later(
+        self,
+        run: Run,
+        path: str,
+        name: str,
+        style: Callable[[Any], None] = style_mesh,
+        place: PlaceColumns | None = None,
+    ) -> None:
+        """Have the output, a file, loaded once the run is over, if the user wants it.
+
+        A mesh gets the style, and a table becomes points where it has columns of coordinates.
+        """
         if self.parameterAsBool(run.parameters, LOAD, run.context):
-            self._to_load.append((path, name_layer(path, name, run.unit), "OUTPUT"))
+            name = name_layer(path, name, run.unit)
+            load = partial(load_file, path, "OUTPUT", name=name, style=style, place=place)
+            self._to_load.append(load)
 
     def run_command(
         self, run: Run, *outputs: str, chosen: Sequence[str] = ()

@@ -1,4 +1,4 @@
-"""Volumes: cut and fill, and what a pond holds."""
+"""Volumes: cut and fill, the difference of two surfaces, and what a pond holds."""
 
 from __future__ import annotations
 
@@ -11,34 +11,22 @@ from qgis.core import (
 )
 
 from ..inputs import POLYGONS, Lines, Surface
-from ..options import describe, number, text
+from ..options import Option, describe, number, text
 from ..results import style_on_loading
-from ..styles import style_earthwork
+from ..styles import style_difference, style_earthwork
 from .base import PICTURES, REPORTS, TABLE_FILES, CommandAlgorithm, Run
 
 _MEASURED = {"CUT": "cut", "FILL": "fill", "NET": "net", "AREA": "area"}
+_DIFFERS = {"CUT": "Cut", "FILL": "Fill", "MEAN": "Mean", "RMS": "Root mean square"}
 _GROUND = Surface(words="Ground")
 _ERROR = "A number in the unit of elevations, or the column of the points that has it."
 
 
-class VolumeAlgorithm(CommandAlgorithm):
-    """Measure cut and fill."""
-
-    verb = "volume"
-    title = "Cut and fill"
-    summary = "Measures cut and fill from the ground to a design, or to a level."
-    explanation = (
-        "Both triangulations are overlaid, exactly. Fill is where the design, or the level, is "
-        "above the ground, cut where it is below; net is fill less cut. With regions there is a "
-        "row for each in the table. With the standard errors of elevations volumes get theirs. "
-        "What differs by no more than the level of detection is unchanged in zones and map."
-    )
-    surfaces = (_GROUND, Surface("DESIGN", "Design", False))
-    lines = (Lines("REGIONS", "Regions", "--regions", "Polygons to measure in.", kind=POLYGONS),)
-    options = (
-        number("BASE", "or a level", "--base", "Elevation in place of a design."),
-        text("ERROR", "Standard error of the ground", "--standard-error", _ERROR),
-        text("DESIGN_ERROR", "Standard error of the design", "--other-standard-error", _ERROR),
+def _list_errors(first: str, name: str, second: str) -> tuple[Option, ...]:
+    """Return the options of errors, of a first surface and, by a name of its own, a second."""
+    return (
+        text("ERROR", f"Standard error of the {first}", "--standard-error", _ERROR),
+        text(name, f"Standard error of the {second}", "--other-standard-error", _ERROR),
         number(
             "RANGE",
             "Range of correlated errors",
@@ -49,9 +37,9 @@ class VolumeAlgorithm(CommandAlgorithm):
         ),
         number(
             "SYSTEMATIC",
-            "Systematic error of the ground",
+            f"Systematic error of the {first}",
             "--systematic",
-            "Standard error of a shift of the whole ground.",
+            f"Standard error of a shift of the whole {first}.",
             least=0.0,
             advanced=True,
         ),
@@ -71,14 +59,31 @@ class VolumeAlgorithm(CommandAlgorithm):
         ),
     )
 
+
+class VolumeAlgorithm(CommandAlgorithm):
+    """Measure cut and fill."""
+
+    verb = "volume"
+    title = "Cut and fill"
+    summary = "Measures cut and fill from the ground to a design, or to a level."
+    explanation = (
+        "Both triangulations are overlaid, exactly. Fill is where the design, or the level, is "
+        "above the ground, cut where it is below; net is fill less cut. With regions there is a "
+        "row for each in the table. With the standard errors of elevations volumes get theirs. "
+        "What differs by no more than the level of detection is unchanged in zones and map."
+    )
+    surfaces = (_GROUND, Surface("DESIGN", "Design", False))
+    lines = (Lines("REGIONS", "Regions", "--regions", "Polygons to measure in.", kind=POLYGONS),)
+    options = (
+        number("BASE", "or a level", "--base", "Elevation in place of a design."),
+        *_list_errors("ground", "DESIGN_ERROR", "design"),
+    )
+
     def add_outputs(self) -> None:
         """Add the table, the zones, a map, a report, and sums for models."""
         self.add_file_output("OUTPUT", "Volumes", TABLE_FILES, "A row a region.")
         self.add_loading("Load the table")
-        made = QgsProcessingParameterVectorDestination(
-            "ZONES", "Zones of cut and fill", QgsProcessing.TypeVectorPolygon, None, True, True
-        )
-        self.addParameter(describe(made, "Polygons of what is cut and what is filled."))
+        self.addParameter(_define_zones())
         self.add_file_output("PICTURE", "Map", PICTURES, "Cut and fill drawn.", optional=True)
         self.add_file_output("REPORT", "Report", REPORTS, "On paper, to sign.", optional=True)
         for name, word in _MEASURED.items():
@@ -101,6 +106,55 @@ class VolumeAlgorithm(CommandAlgorithm):
         if self.found[design.name] is None:
             return run.list_surface(ground)
         return [*run.list_tin(ground), *run.list_tin(design)]
+
+
+class DifferenceAlgorithm(CommandAlgorithm):
+    """Subtract one surface from another."""
+
+    verb = "diff"
+    title = "Difference of TINs"
+    summary = "Subtracts the surface before from that after, exactly, where both exist."
+    explanation = (
+        "The difference is a TIN, whose elevations are above 0 where the surface after is higher: "
+        "a later survey less an earlier one, or a design less the ground. The mesh is colored from "
+        "cut to fill, white where nothing has changed. The table has statistics weighted by area: "
+        "mean, root mean square, quantiles, NMAD. With a level of detection, or standard errors "
+        "and a confidence, what differs by no more is unchanged in zones and map."
+    )
+    surfaces = (Surface("BEFORE", "Before"), Surface("AFTER", "After"))
+    options = _list_errors("surface before", "AFTER_ERROR", "surface after")
+
+    def add_outputs(self) -> None:
+        """Add the difference, the zones, statistics, a map, and numbers for models."""
+        self.add_mesh_output("Difference")
+        self.addParameter(_define_zones())
+        self.add_table_output("Statistics, weighted by area.")
+        self.add_file_output("PICTURE", "Map", PICTURES, "Cut and fill drawn.", optional=True)
+        self.add_numbers(_DIFFERS)
+        self.add_counts()
+
+    def make(self, run: Run) -> dict[str, Any]:
+        """Subtract."""
+        paths, record = self.run_command(run, "OUTPUT", "ZONES", "TABLE", "PICTURE")
+        self.load_later(run, paths["OUTPUT"], "Difference", style_difference)
+        if "ZONES" in paths:
+            style_on_loading(paths["ZONES"], style_earthwork, run.context)
+        told = {**record, **record["statistics"]}
+        names = (*_DIFFERS, "VERTICES", "TRIANGLES")
+        return {**paths, **{name: told[name.lower()] for name in names}}
+
+    def list_inputs(self, run: Run) -> list[str]:
+        """Return all arguments but the outputs."""
+        files = [word for one in self.surfaces for word in run.list_tin(one)]
+        return [self.verb, *files, *run.list_options(self.options), *run.list_extra()]
+
+
+def _define_zones() -> Any:
+    """Return the output of zones, which is not made unless it is named."""
+    made = QgsProcessingParameterVectorDestination(
+        "ZONES", "Zones of cut and fill", QgsProcessing.TypeVectorPolygon, None, True, True
+    )
+    return describe(made, "Polygons of what is cut and what is filled.")
 
 
 class StorageAlgorithm(CommandAlgorithm):
