@@ -90,8 +90,16 @@ def _require_points(features: Features) -> Table:
             f"Cannot write {FILE}: CSV holds points, not {features.kind}; GeoJSON and GeoPackage "
             "hold them."
         )
-    axes = _AXES[: features.coordinates.shape[1]]
-    taken = [name for name in axes if name in features.columns]
+    axes = zip(_AXES, features.coordinates.T, strict=False)  # places may have no elevation
+    taken = [
+        name
+        for name, values in axes
+        if name in features.columns
+        and not (
+            np.array_equal(features.columns[name], values)
+            and features.units.get(name, features.elevation_unit) == features.elevation_unit
+        )
+    ]
     if taken:
         raise FormatError(
             f"Cannot write {FILE}: the points have a coordinate and a column that are both "

@@ -91,8 +91,7 @@ def list_suffixes(one, made):
 def holds(one, made):
     """Whether a format holds a product, as other tests require it where it does not."""
     if isinstance(made, ts.Features):
-        is_list = made.kind == "points" and "elevation" not in made.columns
-        refused = {"landxml": made.kind == "polygons", "csv": not is_list}
+        refused = {"landxml": made.kind == "polygons", "csv": made.kind != "points"}
         return len(made) > 0 and not refused.get(one.name, False)
     if isinstance(made, ts.Raster):
         is_length = getattr(next(iter(made.units.values()), None), "metres", None) is not None

@@ -110,6 +110,14 @@ def test_a_column_that_is_called_as_a_coordinate(tmp_path):
         ts.write(made, tmp_path / "a.csv")
 
 
+def test_a_column_that_says_the_coordinate_again_is_written_once(tmp_path):
+    made = ts.Features.of_points(
+        [[0, 0, 1.5]], columns={"text": ["b"], "elevation": [1.5]}, elevation_unit="m"
+    )
+    lines = ts.write(made, tmp_path / "a.csv").read_text().splitlines()
+    assert lines == ["easting,northing,elevation (m),text", "0.0,0.0,1.5,b"]
+
+
 def test_a_table_is_no_raster_and_no_map(tmp_path):
     for suffix in (".tif", ".gpkg", ".geojson", ".ply"):
         with pytest.raises(FormatError, match="a Table can be written to"):
