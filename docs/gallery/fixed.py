@@ -35,7 +35,7 @@ def main(folder: Path = HERE) -> None:
     corners = [[around.xmin, around.ymin], [around.xmax, around.ymin]]
     corners += [[around.xmax, around.ymax], [around.xmin, around.ymax]]
     change = ts.difference(ground, found.tin, regions={"site": corners}, level_of_detection=0.001)
-    title = f"The yard is in balance at {found.elevation:.2f} m around an oak and a house"
+    title = f"In balance at {found.elevation:.2f} m: the fill is 0.9 of the cut"
     figure = ts.earthwork_map(change, ground=ground, title=title)
     axes = figure.axes[0]
     named = {"pad": PAD, "oak: stays": OAK, f"house: {LEVEL} m": HOUSE}
