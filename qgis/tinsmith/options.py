@@ -147,6 +147,17 @@ def file(name: str, words: str, flag: str, help_text: str, kinds: str) -> Option
     return Option(define, translate)
 
 
+def interpolation() -> Option:
+    """Make the option of how elevations between vertices are found."""
+    return choice(
+        "METHOD",
+        "Between the vertices",
+        "--method",
+        "linear is the TIN itself; laplace, natural and c1 are smooth.",
+        ("linear", "nearest", "laplace", "natural", "c1"),
+    )
+
+
 def elevation_unit() -> Option:
     """Return the option for the unit of elevations."""
     help_text = (

@@ -16,6 +16,7 @@ import numpy as np
 from ...base.errors import OptionError
 from ...base.results import locate_all_centers, locate_centers
 from ...base.types import Bounds
+from ...tin.tiling import intersect
 from ..gridding import GridMeasure, OperatorBand, ReliefBand, SurfaceBand, locate_edges
 from ..surface import NORTHWEST, Light, PlaneMeasure
 from .surfaces import as_surface
@@ -104,7 +105,7 @@ def _count_before(
 
 def _find_rotated(grid: Grid, box: Bounds) -> tuple[slice, slice]:
     """Return the rows and columns that all cells with centres in a box lie in."""
-    held = _meet(box, grid.bounds)
+    held = intersect(box, grid.bounds)
     if held.xmin > held.xmax or held.ymin > held.ymax:
         return _NO_CELLS, _NO_CELLS
     x = np.array([held.xmin, held.xmax, held.xmin, held.xmax])
@@ -118,18 +119,9 @@ def _find_rotated(grid: Grid, box: Bounds) -> tuple[slice, slice]:
     return parts[0], parts[1]
 
 
-def _meet(box: Bounds, other: Bounds) -> Bounds:
-    return Bounds(
-        max(box.xmin, other.xmin),
-        max(box.ymin, other.ymin),
-        min(box.xmax, other.xmax),
-        min(box.ymax, other.ymax),
-    )
-
-
 def _find_rotated_reach(options: RasterOptions, box: Bounds) -> Bounds:
     """Return the box around centres in a box, as far as the cells beside them reach."""
-    held, affine = _meet(box, options.grid.bounds), options.grid.transform
+    held, affine = intersect(box, options.grid.bounds), options.grid.transform
     cells = 0.0 if options.at == "center" else 0.5
     cells += 0.0 if options.of_cells is None else 1.0
     across = cells * (abs(affine.a) + abs(affine.b))

@@ -212,17 +212,7 @@ def _set_line_elevations(
     """Give vertices on lines the elevation of the line that counts most there, its lowest."""
     vertices, line_of = vertex_of[n:], lines.line_of
     priority = lines.priorities[line_of]
-    order = np.argsort(vertices, kind="stable")
-    shared = np.flatnonzero(np.bincount(vertices)[vertices] > 1)
-    if len(shared):
-        owner, counts_most = line_of[shared], -priority[shared]
-        rank = np.where(counts_most == -BELOW_ALL, 0, owner)  # parts of draped lines have no order
-        keys = (owner, lines.elevations[shared], rank, counts_most, vertices[shared])
-        is_shared = np.zeros(len(vertices), np.bool_)
-        is_shared[shared] = True
-        order[is_shared[order]] = shared[np.lexsort(keys)]
-    is_first = np.append(True, np.diff(vertices[order]) > 0)[: len(order)]
-    best = order[is_first]
+    best = lines.find_best_rows(vertices)
     before = points[vertices[best], 2].copy()
     counts = (priority[best] > BELOW_ALL) | np.isnan(before)
     points[vertices[best[counts]], 2] = lines.elevations[best[counts]]

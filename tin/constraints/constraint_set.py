@@ -85,6 +85,26 @@ class LineSet(NamedTuple):
         """The line of each row."""
         return find_owners(self.offsets)
 
+    def find_best_rows(self, vertices: Int32Array | Int64Array) -> Int64Array:
+        """Return the row that counts most of each vertex, in the order of vertices.
+
+        That of the line of highest priority, of these the first, there its lowest; parts of draped
+        lines have no order. ``vertices`` are those of the rows.
+        """
+        order = np.argsort(vertices, kind="stable")
+        shared = np.flatnonzero(np.bincount(vertices)[vertices] > 1)
+        if len(shared):  # hardly any, and a sort by four keys takes long
+            line = self.line_of[shared]
+            priority = self.priorities[line]
+            rank = np.where(priority == BELOW_ALL, 0, line)
+            keys = (line, self.elevations[shared], rank, -priority, vertices[shared])
+            is_shared = np.zeros(len(vertices), np.bool_)
+            is_shared[shared] = True
+            order[is_shared[order]] = shared[np.lexsort(keys)]
+        is_first = np.append(True, np.diff(vertices[order]) > 0)[: len(order)]
+        found: Int64Array = order[is_first]
+        return found
+
     def label(self, line: int) -> str:
         """Return what a line is called in sentences."""
         return self.table.label(line)

@@ -270,12 +270,9 @@ def _describe(
 
 def _set_line_elevations(elevations: Float64Array, vertex_of: Int32Array, lines: LineSet) -> None:
     """Give vertices the elevation of the line that counts most there, its lowest, in place."""
-    line_of = lines.line_of
-    priority = lines.priorities[line_of]
-    rank = np.where(priority == BELOW_ALL, 0, line_of)
-    order = np.lexsort((line_of, lines.elevations, rank, -priority, vertex_of))
-    best = order[np.append(True, np.diff(vertex_of[order]) > 0)[: len(order)]]
-    counts = (priority[best] > BELOW_ALL) | np.isnan(elevations[vertex_of[best]])
+    best = lines.find_best_rows(vertex_of)
+    priority = lines.priorities[lines.line_of[best]]
+    counts = (priority > BELOW_ALL) | np.isnan(elevations[vertex_of[best]])
     elevations[vertex_of[best[counts]]] = lines.elevations[best[counts]]
 
 

@@ -7,7 +7,7 @@ from typing import Any
 from qgis.core import QgsProcessing, QgsProcessingException
 
 from ..inputs import Lines, PointTable, Surface
-from ..options import choice, crs, file, text
+from ..options import choice, crs, file, interpolation, text
 from .base import TABLE_FILES, CommandAlgorithm, Run
 
 
@@ -89,13 +89,7 @@ class InterpolateAlgorithm(CommandAlgorithm):
             "That of the surface if empty.",
             advanced=True,
         ),
-        choice(
-            "METHOD",
-            "Between the vertices",
-            "--method",
-            "linear is the TIN itself; laplace, natural and c1 are smooth.",
-            ("linear", "nearest", "laplace", "natural", "c1"),
-        ),
+        interpolation(),
         choice(
             "EXTRAPOLATE",
             "Outside the surface",

@@ -7,7 +7,7 @@ from typing import Any
 from qgis.core import QgsProcessingParameterRasterDestination, QgsProcessingParameterRasterLayer
 
 from ..inputs import Surface, find_raster
-from ..options import choice, describe, number, switch
+from ..options import choice, describe, interpolation, number, switch
 from ..styles import style_hillshade, style_raster
 from .base import CommandAlgorithm, Run
 
@@ -73,13 +73,7 @@ class RasterAlgorithm(CommandAlgorithm):
             "Values of cells and their neighbours also at the rim and beside cells without data.",
             advanced=True,
         ),
-        choice(
-            "METHOD",
-            "Between the vertices",
-            "--method",
-            "linear is the TIN itself; laplace, natural and c1 are smooth.",
-            ("linear", "nearest", "laplace", "natural", "c1"),
-        ),
+        interpolation(),
         choice(
             "AT",
             "Value of a cell",
